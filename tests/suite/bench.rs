@@ -1,14 +1,28 @@
 //! The counts of `bench` are exact, repeat, and have not grown since they were recorded.
 
 use microphong_sim::{
-    bench::{Bench, Processor, baseline, callgrind::Counters, renewal::Growth, stage::Meter, styles, styles::RedrawCost},
+    bench::{
+        Bench, Processor,
+        baseline::{self, Entry},
+        board_styles::{BoardStyle, PLAIN, Program, STYLES},
+        callgrind::Counters,
+        renewal::Growth,
+        stage::Meter,
+        styles,
+        styles::RedrawCost,
+    },
     board::{Blocks, elf::Elf, trace},
     scene,
     shader::Shader,
     verify,
 };
 use microphong_tests::{named, program};
-use std::{collections::BTreeMap, fs, path::Path, process::Command};
+use std::{
+    collections::BTreeMap,
+    fs,
+    path::{Path, PathBuf},
+    process::Command,
+};
 
 /// QEMU logs blocks of instructions; one by one it executes the same, address by address.
 #[test]
@@ -142,18 +156,19 @@ fn smooth_outlines_cost_what_the_guide_says() {
     assert!(Bench::antialiased(&[Processor::X86_64]).unwrap_err().to_string().contains("--styles"));
 }
 
-/// No frame costs more than recorded, but for the tolerance.
-#[test]
-fn costs_have_not_grown() {
-    let path = Path::new(env!("CARGO_MANIFEST_DIR")).join("baselines/costs.csv");
-    let recorded = baseline::read(&path).unwrap();
-    let measured = baseline::measure(&recorded, &|| ()).unwrap();
-    let changes = baseline::changes(&recorded, &measured);
-    let growth = Growth::of(&path, &measured).unwrap().expect("the costs of a release lie beside the recorded ones");
-    assert!(growth.frames > 50, "only {} frames of the release are still measured", growth.frames);
-    println!("{growth}");
+/// A file of recorded costs.
+fn recorded(file: &str) -> (PathBuf, Vec<Entry>) {
+    let path = Path::new(env!("CARGO_MANIFEST_DIR")).join("baselines").join(file);
+    let entries = baseline::read(&path).unwrap();
+    (path, entries)
+}
+
+/// Measures the `recorded` frames of `file` again. None may cost more, but for the tolerance.
+fn measured_again(file: &str, recorded: &[Entry]) -> Vec<Entry> {
+    let measured = baseline::measure(recorded, &|| ()).unwrap();
+    let changes = baseline::changes(recorded, &measured);
     let (grown, shrunk): (Vec<_>, Vec<_>) = changes.iter().partition(|change| change.percent() > 0.0);
-    let renew = "renew the file: cargo run --release --features boards -- bench --renew tests/baselines/costs.csv --reason \"...\"";
+    let renew = format!("renew the file: cargo run --release --features boards -- bench --renew tests/baselines/{file} --reason \"...\"");
     for change in shrunk.iter().chain(&grown) {
         println!("{change}");
     }
@@ -161,7 +176,63 @@ fn costs_have_not_grown() {
         println!("{} costs have shrunk, which would hide later growth: {renew}", shrunk.len());
     }
     let list: Vec<_> = grown.iter().map(|change| change.to_string()).collect();
-    assert!(grown.is_empty(), "{} costs have grown:\n{}\n{growth}\nif this is intended, {renew}", grown.len(), list.join("\n"));
+    assert!(grown.is_empty(), "{} costs have grown:\n{}\nif this is intended, {renew}", grown.len(), list.join("\n"));
+    measured
+}
+
+/// No frame costs more than recorded, but for the tolerance.
+#[test]
+fn costs_have_not_grown() {
+    let (path, recorded) = recorded("costs.csv");
+    let measured = measured_again("costs.csv", &recorded);
+    let growth = Growth::of(&path, &measured).unwrap().expect("the costs of a release lie beside the recorded ones");
+    assert!(growth.frames > 50, "only {} frames of the release are still measured", growth.frames);
+    println!("{growth}");
+}
+
+/// No style costs more than recorded. These are the styles of programs that other tests need as well; `bench --check` measures all.
+#[test]
+fn styles_have_not_grown() {
+    let (_, all) = recorded("styles.csv");
+    let chosen = |entry: &&Entry| {
+        entry.scene == "teapot"
+            && [Shader::GOURAUD, Shader::PHONG].contains(&entry.shader)
+            && !matches!(entry.style.program, Program::Styles(_))
+    };
+    let few: Vec<_> = all.iter().filter(chosen).cloned().collect();
+    assert!(few.len() == 22, "{} frames", few.len());
+    measured_again("styles.csv", &few);
+    // Every style is recorded, and each takes other instructions than the plain one, but for the format in which only red and blue are exchanged.
+    for style in &STYLES {
+        let of = |style: &BoardStyle| {
+            let frame = |entry: &&Entry| entry.scene == "peer-sphere-plastic" && entry.shader == Shader::PHONG && entry.style == style;
+            all.iter().find(frame).unwrap_or_else(|| panic!("no costs of {}", style.name)).instructions
+        };
+        let is_alike = ["plain", "bgr565"].contains(&style.name);
+        assert!((of(style).abs_diff(of(PLAIN)) < of(PLAIN) / 1000) == is_alike, "{}: {}", style.name, of(style));
+    }
+}
+
+/// A table for each scene has a row for each style, and JSON names the board.
+#[test]
+fn styles_are_a_table() {
+    let run = |arguments: &[&str]| {
+        let output =
+            Command::new(program()).args(["bench", "triangle", "--styles", "--shader", "flat,gouraud4"]).args(arguments).output().unwrap();
+        assert!(output.status.success(), "{}", String::from_utf8_lossy(&output.stderr));
+        String::from_utf8(output.stdout).unwrap()
+    };
+    let table = run(&[]);
+    let lines: Vec<_> = table.lines().collect();
+    assert_eq!(lines.len(), 6, "{table}");
+    assert!(lines[0].starts_with("x86-64, triangle: instructions per pixel") && lines[1].trim() == "flat         gouraud4", "{table}");
+    assert!(lines[2].starts_with("  plain ") && lines[2].ends_with(" 1.00") && lines[5].starts_with("  perspective-correct "), "{table}");
+    assert!(lines[5].ends_with(" -"), "gouraud4 cannot interpolate in perspective: {table}");
+    let json = run(&["--board", "x86-64", "--json"]);
+    assert!(
+        json.lines().count() == 2 && json.lines().all(|line| line.starts_with("{\"board\":\"x86-64\",\"scene\":\"triangle\"")),
+        "{json}"
+    );
 }
 
 /// Renewed costs are the measured ones, with the reason beside them. Unchanged costs need no reason.

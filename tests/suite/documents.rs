@@ -187,6 +187,28 @@ fn costs_are_those_that_are_recorded() {
     }
 }
 
+/// Instructions of styles on a board in the guide, as `tests/baselines/styles.csv` has them.
+#[test]
+fn styles_are_those_that_are_recorded() {
+    /// Pixels of the scene.
+    const PIXELS: f64 = 43_813.0;
+    let (recorded, guide) = (read(&root().join("baselines/styles.csv")), read(&repository().join("docs/guide/costs.md")));
+    let mut found = 0;
+    for line in recorded.lines() {
+        let [_, "peer-sphere-plastic", method, style, instructions, _] = line.split(',').collect::<Vec<_>>()[..] else { continue };
+        let column = ["gouraud", "six-point", "phong", "auto"].iter().position(|name| *name == method).expect("a column");
+        let row = guide.lines().find(|line| line.starts_with(&format!("| `{style}` |"))).unwrap_or_else(|| panic!("no row {style}"));
+        let told: f64 = row.split('|').nth(3 + column).and_then(|cell| cell.trim().parse().ok()).expect("a figure");
+        let expected = instructions.parse::<f64>().expect("a figure") / PIXELS;
+        assert!((told / expected - 1.0).abs() < 0.01, "{style}, {method}: {expected:.1} and not {told}");
+        found += 1;
+    }
+    assert_eq!(
+        found,
+        4 * guide.lines().skip_while(|line| !line.starts_with("| style |")).skip(2).take_while(|line| line.starts_with('|')).count()
+    );
+}
+
 /// The names that a user of the library sees are those of `docs/public-names.txt`. `MICROPHONG_BLESS=1` writes them there; CHANGELOG.md then has to
 /// say what has changed.
 #[test]

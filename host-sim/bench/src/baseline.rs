@@ -1,11 +1,14 @@
 //! Recorded costs of frames, in a file that is kept with the sources.
 //!
-//! Each line is a frame: board, scene, method, instructions, bytes of flash. The lines choose what is measured. To add a frame, add a line with zeros
-//! and renew the file.
+//! Each line is a frame: board, scene, method, instructions, bytes of flash. In a file of styles the name of the style follows the method. The lines
+//! choose what is measured. To add a frame, add a line with zeros and renew the file.
 
-use super::{Bench, Measurement, Processor};
+use super::{
+    Bench, Measurement, Processor,
+    board_styles::{BoardStyle, PLAIN},
+};
 use anyhow::{Context, Result, ensure};
-use microphong_models::scene;
+use microphong_models::scene::{self, Scene};
 use microphong_render::{output, shader::Shader};
 use std::{fmt, fs, path::Path};
 
@@ -13,6 +16,8 @@ use std::{fmt, fs, path::Path};
 pub const TOLERANCE: f64 = 0.2;
 
 const HEAD: &str = "board,scene,shader,instructions,flash_bytes";
+/// The first line of a file of styles.
+const STYLED_HEAD: &str = "board,scene,shader,style,instructions,flash_bytes";
 
 /// A line of the file.
 #[derive(Clone, Debug, PartialEq, Eq)]
@@ -23,6 +28,8 @@ pub struct Entry {
     pub scene: String,
     /// The method.
     pub shader: Shader,
+    /// The style.
+    pub style: &'static BoardStyle,
     /// Instructions of the frame, without clearing and transfer.
     pub instructions: u64,
     /// Flash of the method, in bytes; see [`Measurement::flash_bytes`].
@@ -32,8 +39,10 @@ pub struct Entry {
 impl Entry {
     pub(super) fn parse(line: &str) -> Result<Self> {
         let words: Vec<_> = line.split(',').map(str::trim).collect();
-        let [board, scene, shader, instructions, flash_bytes] = words[..] else {
-            anyhow::bail!("{} words instead of those of `{HEAD}`", words.len());
+        let (board, scene, shader, style, instructions, flash_bytes) = match words[..] {
+            [board, scene, shader, instructions, flash_bytes] => (board, scene, shader, PLAIN.name, instructions, flash_bytes),
+            [board, scene, shader, style, instructions, flash_bytes] => (board, scene, shader, style, instructions, flash_bytes),
+            _ => anyhow::bail!("{} words instead of those of `{HEAD}` or `{STYLED_HEAD}`", words.len()),
         };
         let processor = Processor::ALL.into_iter().find(|processor| processor.board_name() == board);
         let shader = Shader::ALL.into_iter().find(|other| other.name() == shader).with_context(|| format!("no method {shader}"))?;
@@ -41,15 +50,22 @@ impl Entry {
             processor: processor.with_context(|| format!("no board {board}"))?,
             scene: scene.to_owned(),
             shader,
+            style: BoardStyle::named(style).with_context(|| format!("no style {style}"))?,
             instructions: instructions.parse().with_context(|| format!("`{instructions}` is no number"))?,
             flash_bytes: flash_bytes.parse().with_context(|| format!("`{flash_bytes}` is no number"))?,
         })
     }
 
+    /// The entry of a frame that is not measured yet.
+    #[must_use]
+    pub fn unmeasured(processor: Processor, scene: &str, shader: Shader, style: &'static BoardStyle) -> Self {
+        Self { processor, scene: scene.to_owned(), shader, style, instructions: 0, flash_bytes: 0 }
+    }
+
     /// Whether both entries are for one frame.
     #[must_use]
     pub fn same_frame(&self, other: &Self) -> bool {
-        (self.processor, &self.scene, self.shader) == (other.processor, &other.scene, other.shader)
+        (self.processor, &self.scene, self.shader, self.style) == (other.processor, &other.scene, other.shader, other.style)
     }
 
     /// The entry for this frame with the figures that were measured now.
@@ -57,12 +73,18 @@ impl Entry {
     fn renewed(&self, now: &Measurement) -> Self {
         Self { instructions: now.instructions, flash_bytes: now.flash_bytes.unwrap_or(0), ..self.clone() }
     }
+
+    /// The line of the entry. In a file of styles it names the style.
+    fn line(&self, is_styled: bool) -> String {
+        let Self { processor, scene, shader, style, instructions, flash_bytes } = self;
+        let style = if is_styled { format!("{},", style.name) } else { String::new() };
+        format!("{},{scene},{},{style}{instructions},{flash_bytes}", processor.board_name(), shader.name())
+    }
 }
 
 impl fmt::Display for Entry {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
-        let Self { processor, scene, shader, instructions, flash_bytes } = self;
-        write!(f, "{},{scene},{},{instructions},{flash_bytes}", processor.board_name(), shader.name())
+        f.write_str(&self.line(self.style != PLAIN))
     }
 }
 
@@ -89,9 +111,10 @@ impl Change {
 
 impl fmt::Display for Change {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
-        let Entry { processor, scene, shader, .. } = &self.entry;
+        let Entry { processor, scene, shader, style, .. } = &self.entry;
+        let style = if *style == PLAIN { String::new() } else { format!(" in the style {}", style.name) };
         let (shader, cpu, Self { what, was, is, .. }) = (shader.name(), processor.name(), self);
-        write!(f, "{shader} on {cpu}, {scene}: {what} {was} -> {is} ({:+.2} %)", self.percent())
+        write!(f, "{shader} on {cpu}, {scene}{style}: {what} {was} -> {is} ({:+.2} %)", self.percent())
     }
 }
 
@@ -118,7 +141,7 @@ pub fn changes(recorded: &[Entry], measured: &[Entry]) -> Vec<Change> {
 /// Names file and line.
 pub fn read(path: &Path) -> Result<Vec<Entry>> {
     let text = fs::read_to_string(path).with_context(|| format!("cannot read {}", path.display()))?;
-    let lines = (1..).zip(text.lines()).filter(|(_, line)| !line.trim().is_empty() && *line != HEAD);
+    let lines = (1..).zip(text.lines()).filter(|(_, line)| !line.trim().is_empty() && ![HEAD, STYLED_HEAD].contains(line));
     let entry = |(number, line)| Entry::parse(line).with_context(|| format!("{}, line {number}", path.display()));
     let entries = lines.map(entry).collect::<Result<Vec<_>>>()?;
     ensure!(!entries.is_empty(), "{} lists no frames", path.display());
@@ -130,7 +153,9 @@ pub fn read(path: &Path) -> Result<Vec<Entry>> {
 /// # Errors
 /// When it cannot be written.
 pub fn write(path: &Path, entries: &[Entry]) -> Result<()> {
-    let lines: Vec<_> = std::iter::once(HEAD.to_owned()).chain(entries.iter().map(Entry::to_string)).collect();
+    let is_styled = entries.iter().any(|entry| entry.style != PLAIN);
+    let head = if is_styled { STYLED_HEAD } else { HEAD };
+    let lines: Vec<_> = std::iter::once(head.to_owned()).chain(entries.iter().map(|entry| entry.line(is_styled))).collect();
     output::write(path, (lines.join("\n") + "\n").as_bytes())
 }
 
@@ -139,27 +164,39 @@ pub fn write(path: &Path, entries: &[Entry]) -> Result<()> {
 /// # Errors
 /// When a scene is unknown or a board fails.
 pub fn measure(entries: &[Entry], tick: &(dyn Fn() + Sync)) -> Result<Vec<Entry>> {
-    let mut processors: Vec<_> = entries.iter().map(|entry| entry.processor).collect();
-    processors.sort_unstable();
-    processors.dedup();
-    let bench = Bench::new(&processors)?;
-    let mut names: Vec<_> = entries.iter().map(|entry| &entry.scene).collect();
-    names.sort_unstable();
-    names.dedup();
+    measure_with(entries, &scene::load, tick)
+}
+
+/// Measures as [`measure`] does, scenes that `load` knows by their names.
+///
+/// # Errors
+/// When a scene is unknown or a board fails.
+pub fn measure_with(entries: &[Entry], load: &dyn Fn(&str) -> Result<Scene>, tick: &(dyn Fn() + Sync)) -> Result<Vec<Entry>> {
     let mut measured = entries.to_vec();
-    for name in names {
-        let (places, wanted): (Vec<_>, Vec<_>) = (0..)
-            .zip(entries)
-            .filter(|(_, entry)| entry.scene == *name)
-            .map(|(place, entry)| (place, (entry.processor, entry.shader)))
-            .unzip();
-        let now = bench.count(&scene::load(name)?, &wanted, tick)?;
-        for (place, now) in places.into_iter().zip(&now) {
-            let entry: &mut Entry = measured.get_mut::<usize>(place).context("a line that was not there")?;
-            *entry = entry.renewed(now);
+    for program in distinct(entries.iter().map(|entry| entry.style.program)) {
+        let drawn = |entry: &&Entry| entry.style.program == program;
+        let bench = Bench::of_program(&distinct(entries.iter().filter(drawn).map(|entry| entry.processor)), program)?;
+        for (name, style) in distinct(entries.iter().filter(drawn).map(|entry| (&entry.scene, entry.style.name))) {
+            let is_it = |entry: &Entry| (&entry.scene, entry.style.name) == (name, style);
+            let (places, wanted): (Vec<_>, Vec<_>) =
+                (0..).zip(entries).filter(|(_, entry)| is_it(entry)).map(|(place, entry)| (place, (entry.processor, entry.shader))).unzip();
+            let style = BoardStyle::named(style).context("a style that was not there")?;
+            let now = bench.count(&style.of(&load(name)?)?, &wanted, tick)?;
+            for (place, now) in places.into_iter().zip(&now) {
+                let entry: &mut Entry = measured.get_mut::<usize>(place).context("a line that was not there")?;
+                *entry = entry.renewed(now);
+            }
         }
     }
     Ok(measured)
+}
+
+/// Each value once, in order.
+fn distinct<T: Ord>(values: impl Iterator<Item = T>) -> Vec<T> {
+    let mut values: Vec<_> = values.collect();
+    values.sort_unstable();
+    values.dedup();
+    values
 }
 
 #[cfg(test)]
@@ -175,15 +212,23 @@ mod tests {
             changes(std::slice::from_ref(&old), &[now]).iter().map(ToString::to_string).collect::<Vec<_>>()
         };
         assert!(changes(1002, 2004).is_empty());
+        let styled = Entry::parse("mps2-an385,teapot,flat,8-lights,1000,2000").unwrap();
+        assert_eq!(styled.to_string(), "mps2-an385,teapot,flat,8-lights,1000,2000");
+        assert!(!styled.same_frame(&old) && styled.same_frame(&styled));
+        let change = super::changed(std::slice::from_ref(&styled), &[Entry { instructions: 1001, ..styled.clone() }]);
+        assert_eq!(change[0].to_string(), "flat on cortex-m3, teapot in the style 8-lights: instructions 1000 -> 1001 (+0.10 %)");
         assert_eq!(changes(1003, 2004), ["flat on cortex-m3, teapot: instructions 1000 -> 1003 (+0.30 %)"]);
         assert_eq!(changes(1002, 1995), ["flat on cortex-m3, teapot: bytes of flash 2000 -> 1995 (-0.25 %)"]);
     }
 
     #[test]
     fn damaged_lines_say_what_is_wrong() {
-        for (line, message) in
-            [("pico,teapot,flat,1", "4 words"), ("pico,teapot,flat,x,1", "`x` is no number"), ("pi,teapot,flat,1,1", "no board pi")]
-        {
+        for (line, message) in [
+            ("pico,teapot,flat,1", "4 words"),
+            ("pico,teapot,flat,round,1,1", "no style round"),
+            ("pico,teapot,flat,x,1", "`x` is no number"),
+            ("pi,teapot,flat,1,1", "no board pi"),
+        ] {
             let error = format!("{:#}", Entry::parse(line).unwrap_err());
             assert!(error.contains(message), "{error}");
         }

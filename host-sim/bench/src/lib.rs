@@ -2,6 +2,7 @@
 //! same code on the host.
 
 pub mod baseline;
+pub mod board_styles;
 pub mod break_even;
 pub mod callgrind;
 pub mod family;
@@ -19,11 +20,12 @@ pub mod stage;
 pub mod styles;
 
 use anyhow::{Context, Result, ensure};
+use board_styles::Program;
 use embedded_graphics_core::{geometry::Size, pixelcolor::Rgb565};
 use flash::Graph;
 pub use measurement::{Measurement, Timing};
 use microphong::renderer::check;
-use microphong_boards::{self as boards, Board, elf::Elf, verify};
+use microphong_boards::{self as boards, Board, elf::Elf};
 use microphong_compare::Reference;
 use microphong_models::scene::Scene;
 use microphong_render::{choices, shader::Shader};
@@ -51,7 +53,7 @@ pub struct Bench {
     firmware: Vec<(Processor, Firmware)>,
     /// The program that draws on the host.
     host: Option<PathBuf>,
-    /// Whether outlines are smooth, on boards.
+    /// Whether streams get neighbours, so that boards draw smooth outlines.
     antialias: bool,
 }
 
@@ -61,7 +63,7 @@ impl Bench {
     /// # Errors
     /// When a firmware does not compile.
     pub fn new(processors: &[Processor]) -> Result<Self> {
-        Self::of(processors, false)
+        Self::of_program(processors, Program::Plain)
     }
 
     /// Builds the firmware of boards that draws smooth outlines.
@@ -70,14 +72,18 @@ impl Bench {
     /// When a board has no memory for them, a processor is no board, or a firmware does not compile.
     pub fn antialiased(processors: &[Processor]) -> Result<Self> {
         ensure!(!processors.contains(&Processor::X86_64), "smooth outlines on this computer are counted by --styles");
-        Self::of(processors, true)
+        Ok(Self { antialias: true, ..Self::of_program(processors, Program::Antialias)? })
     }
 
-    fn of(processors: &[Processor], antialias: bool) -> Result<Self> {
+    /// Builds a program of boards.
+    ///
+    /// # Errors
+    /// When a board has no memory for it, or it does not compile.
+    pub fn of_program(processors: &[Processor], program: Program) -> Result<Self> {
         let boards = processors.iter().filter(|processor| processor.board().is_some());
-        let built = boards.map(|&processor| Ok((processor, Firmware::build(processor, antialias)?)));
+        let built = boards.map(|&processor| Ok((processor, Firmware::build(processor, program)?)));
         let host = processors.contains(&Processor::X86_64).then(callgrind::build).transpose()?;
-        Ok(Self { firmware: built.collect::<Result<_>>()?, host, antialias })
+        Ok(Self { firmware: built.collect::<Result<_>>()?, host, antialias: false })
     }
 
     /// Measures frame 0 of `scene` by each of the `wanted` methods on each of the processors, with its error and what `auto`
@@ -162,9 +168,9 @@ impl Bench {
 }
 
 impl Firmware {
-    fn build(processor: Processor, antialias: bool) -> Result<Self> {
+    fn build(processor: Processor, program: Program) -> Result<Self> {
         let board = processor.board().with_context(|| format!("{} has no firmware", processor.name()))?;
-        let elf = Elf::read(&verify::build(board, antialias)?)?;
+        let elf = Elf::read(&program.build(board)?)?;
         Ok(Self { board, meter: Meter::new(&elf)?, graph: Graph::new(&elf)?, elf })
     }
 

@@ -1,5 +1,5 @@
 //! Costs of styles, and savings by leaving out work that nobody can see or that has not changed. They are instructions of frames on x86-64, counted
-//! by the program that `stress` uses, which draws in every style.
+//! by the program that `stress` uses, which draws in every style. [`super::board_styles`] counts styles on boards.
 
 use crate::{Processor, callgrind::Counters};
 use anyhow::{Context, Result, ensure};
@@ -42,6 +42,8 @@ pub fn skips(shader: Shader) -> Vec<Named> {
 /// A scene by one method in several styles.
 #[derive(Clone, Debug, Serialize)]
 pub struct StyleCosts {
+    /// The board that drew; of this computer its architecture.
+    pub board: &'static str,
     /// Name of the scene.
     pub scene: String,
     /// Name of the method.
@@ -50,7 +52,7 @@ pub struct StyleCosts {
     pub pixels: u32,
     /// Names of the styles, the plain one first.
     pub styles: Vec<String>,
-    /// Instructions of the frame, clearing included, in each of them; `None` where the method cannot draw it.
+    /// Instructions of the frame in each of them, on this computer with clearing; `None` where the method cannot draw it.
     pub instructions: Vec<Option<u64>>,
 }
 
@@ -76,7 +78,14 @@ pub fn measure(
         };
         let instructions = styles.into_iter().map(count).collect::<Result<_>>()?;
         tick();
-        Ok(StyleCosts { scene: scene.name.clone(), shader: shader.name(), pixels: stats.pixels, styles: names, instructions })
+        Ok(StyleCosts {
+            board: Processor::X86_64.board_name(),
+            scene: scene.name.clone(),
+            shader: shader.name(),
+            pixels: stats.pixels,
+            styles: names,
+            instructions,
+        })
     });
     costs.collect()
 }

@@ -3,7 +3,7 @@
 use crate::files;
 use anyhow::{Result, anyhow};
 use microphong::{
-    Outlines, Stream, StreamError,
+    Light, Outlines, Stream, StreamError,
     format::ErrorBudget,
     stream::{
         record::{Header, NO_OUTLINES, OUTLINES_ALONE, OUTLINES_OVER_SURFACES},
@@ -63,6 +63,22 @@ impl StreamBytes {
             seal(bytes);
         }
         self
+    }
+
+    /// Puts other lights in place of those that there are.
+    ///
+    /// # Errors
+    /// Errors of [`Self::parse`], or when the lights are not valid.
+    pub fn with_lights(&self, lights: &[Light]) -> Result<Self> {
+        let stream = self.parse()?;
+        let before = size_of::<Header>() + size_of_val(stream.meshes) + size_of_val(stream.materials);
+        let (before, rest) = self.as_bytes().split_at(before);
+        let rest = rest.get(size_of_val(stream.lights)..).unwrap_or_default();
+        let bytes = [before, lights.as_bytes(), rest].concat();
+        let length = bytes.len() as u32;
+        let changed = Self::from(&bytes[..]).with_header(|header| (header.lights, header.length) = (lights.len() as u16, length));
+        changed.parse()?;
+        Ok(changed)
     }
 
     /// States lines along outlines in place of those that there are, and adds the neighbours that they need.

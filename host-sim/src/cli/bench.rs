@@ -10,7 +10,7 @@ use anyhow::Result;
 use microphong::{format::ErrorBudget, renderer::check};
 use microphong_sim::{
     bench::{
-        Bench, Measurement, PICO_HZ, Processor, Timing, baseline,
+        Bench, Measurement, PICO_HZ, Processor, Timing, baseline, board_styles,
         callgrind::Counters,
         growth::{SHADERS, Sweep},
         page::Page,
@@ -45,9 +45,9 @@ pub(crate) struct Arguments {
     #[arg(long, value_name = "LSB,...", value_delimiter = ',', value_parser = parse::budget)]
     budget: Vec<ErrorBudget>,
     /// Boards, separated by commas: mps2-an385 (Cortex-M3), mps2-an386 (Cortex-M4F), pico (Cortex-M0+), x86-64 (this computer);
-    /// or all.
-    #[arg(long, value_name = "B,...", default_value = "mps2-an385", value_parser = processors)]
-    board: Several<Processor>,
+    /// or all. The default is mps2-an385, or x86-64 with --styles.
+    #[arg(long, value_name = "B,...", value_parser = processors)]
+    board: Option<Several<Processor>>,
     /// Draw smooth outlines. Only the boards mps2-an385 and mps2-an386 have the memory for them; name them with --board.
     #[arg(long, conflicts_with_all = ["report", "peers"])]
     antialias: bool,
@@ -60,8 +60,10 @@ pub(crate) struct Arguments {
     /// Also measure other renderers on these scenes, on the boards mps2-an385, mps2-an386 and x86-64, and print their figures beside those of microphong.
     #[arg(long)]
     peers: bool,
-    /// Also count frames with antialiasing, with lines along outlines, and with interpolation in perspective, on this computer.
-    #[arg(long, conflicts_with_all = ["antialias", "board", "report", "peers"])]
+    /// Count frames in several styles. On this computer: with antialiasing, with lines along outlines, and with interpolation in perspective. On
+    /// mps2-an385 and mps2-an386 also: under near lights with a range or a cone, under 2 to 8 lights and the light of the sky, with gamma, and in each
+    /// pixel format.
+    #[arg(long, conflicts_with_all = ["antialias", "report", "peers"])]
     styles: bool,
     /// Count how many instructions are saved by skipping invisible work, for each kind of work, on this computer.
     #[arg(long, conflicts_with_all = ["antialias", "board", "report", "peers", "styles"])]
@@ -98,9 +100,11 @@ Examples:
   microphong bench --peers --board mps2-an385,mps2-an386,x86-64    compared with other renderers
   microphong bench teapot --antialias --shader gouraud   with smooth outlines
   microphong bench --styles                              the cost of antialiasing, outlines and perspective
+  microphong bench teapot --styles --board mps2-an385    the cost of lights and pixel formats as well
   microphong bench all --skips                           the saving by skipping invisible work
   microphong bench board --redraw --shader auto          the saving by partial redraw
   microphong bench --check tests/baselines/costs.csv     check that no cost has grown
+  microphong bench --check tests/baselines/styles.csv    the same for styles
   microphong bench --renew tests/baselines/costs.csv --reason \"Thin triangles no longer flicker.\"
                                                          record the new costs and the reason
 
@@ -112,6 +116,7 @@ Stages:
   span      once per row of a triangle: work before the inner loop
   pixel     the inner loop
   edges     smooth outlines: finding and following edges, mixing pixels
+  output    making pixels of the display from light
   clear     filling the band with the background and the farthest depth; not part of the sum
   transfer  sending pixels to the display, without waiting; not part of the sum
 
@@ -120,6 +125,11 @@ Stages:
   error     difference from per-pixel Phong shading in 64-bit floating point; 255 is full intensity
 
 Exit codes: 0 success; 1 failure, or a cost has grown; 2 wrong usage.";
+
+/// The boards of `--board`, or this one.
+fn boards(arguments: &Arguments, default: Processor) -> Several<Processor> {
+    arguments.board.clone().unwrap_or(Several { values: vec![default], all: false })
+}
 
 /// Processors, by their boards.
 fn processors(text: &str) -> Result<Several<Processor>, String> {
@@ -145,26 +155,28 @@ pub(crate) fn run(arguments: &Arguments) -> Result<Outcome> {
     if arguments.redraw {
         return redraws(&scenes, wanted, arguments.json);
     }
-    if arguments.styles || arguments.skips {
-        let styles = if arguments.styles { styles::styles } else { styles::skips };
-        return in_styles(&scenes, wanted, styles, arguments.json);
+    if arguments.skips {
+        return in_styles(&scenes, &wanted, styles::skips, arguments.json);
     }
+    if arguments.styles {
+        return on_boards(&boards(arguments, Processor::X86_64), &scenes, &wanted, arguments.json);
+    }
+    let boards = boards(arguments, Processor::CortexM3);
     let wanted = |scene: &Scene| {
         let shaders = wanted(scene);
-        arguments.board.values.iter().flat_map(|&board| shaders.iter().map(move |&shader| (board, shader)).collect::<Vec<_>>()).collect()
+        boards.values.iter().flat_map(|&board| shaders.iter().map(move |&shader| (board, shader)).collect::<Vec<_>>()).collect()
     };
     let scenes: Vec<(Scene, Vec<_>)> = scenes.into_iter().map(|scene| (wanted(&scene), scene)).map(|(w, s)| (s, w)).collect();
     let page = arguments.report.as_deref().map(Page::create).transpose()?;
     let common = if arguments.peers { drawable(&scenes)? } else { Vec::new() };
-    let boards: Vec<_> = arguments.board.values.iter().copied().filter(|&board| !common.is_empty() && peers::possible(board)).collect();
+    let with_peers: Vec<_> = boards.values.iter().copied().filter(|&board| !common.is_empty() && peers::possible(board)).collect();
     // What depends on the budget is measured once more for each that is left.
     let others = arguments.budget.get(1..).unwrap_or_default();
     let again = |wanted: &[(Processor, Shader)]| wanted.iter().copied().filter(|&(_, shader)| shader.keeps_budget()).collect::<Vec<_>>();
     let steps = scenes.iter().map(|(_, wanted)| wanted.len() + others.len() * again(wanted).len()).sum::<usize>();
-    let steps = steps + 1 + common.len() * boards.len();
+    let steps = steps + 1 + common.len() * with_peers.len();
     let bar = report::progress(steps as u64, "counting instructions");
-    let processors = &arguments.board.values;
-    let bench = if arguments.antialias { Bench::antialiased(processors) } else { Bench::new(processors) }?;
+    let bench = if arguments.antialias { Bench::antialiased(&boards.values) } else { Bench::new(&boards.values) }?;
     bar.inc(1);
     let mut all = Vec::new();
     for (scene, wanted) in &scenes {
@@ -175,7 +187,7 @@ pub(crate) fn run(arguments: &Arguments) -> Result<Outcome> {
         bar.suspend(|| measured.iter().try_for_each(|m| if arguments.json { report::json(m) } else { text(m) }))?;
         all.extend(measured);
     }
-    let programs = boards.into_iter().map(Program::build).collect::<Result<Vec<_>>>()?;
+    let programs = with_peers.into_iter().map(Program::build).collect::<Result<Vec<_>>>()?;
     let mut tables = Vec::new();
     for scene in common {
         let mut theirs = Vec::new();
@@ -183,7 +195,7 @@ pub(crate) fn run(arguments: &Arguments) -> Result<Outcome> {
             theirs.extend(program.measure(scene)?);
             bar.inc(1);
         }
-        let table = Table::new(&scene.name, &all, &theirs, &arguments.board.values)?;
+        let table = Table::new(&scene.name, &all, &theirs, &boards.values)?;
         bar.suspend(|| if arguments.json { theirs.iter().try_for_each(report::json) } else { beside(&table) })?;
         tables.push(table);
     }
@@ -197,13 +209,38 @@ pub(crate) fn run(arguments: &Arguments) -> Result<Outcome> {
     Ok(Outcome::Done)
 }
 
-/// Counts `scenes` by the `wanted` methods in `styles`.
-fn in_styles(scenes: &[Scene], wanted: impl Fn(&Scene) -> Vec<Shader>, styles: fn(Shader) -> Vec<Named>, json: bool) -> Result<Outcome> {
+/// Counts `scenes` by the `wanted` methods in the styles of each board.
+fn on_boards(boards: &Several<Processor>, scenes: &[Scene], wanted: &dyn Fn(&Scene) -> Vec<Shader>, json: bool) -> Result<Outcome> {
+    // Of all boards those that draw styles.
+    let is_possible = |board: Processor| board == Processor::X86_64 || board_styles::possible(board);
+    for board in boards.values.iter().copied().filter(|&board| !boards.all || is_possible(board)) {
+        if !is_possible(board) {
+            let name = board.board_name();
+            return Err(Usage(format!(
+                "--styles: {name} has too little memory for the programs; use --board mps2-an385, mps2-an386 or x86-64"
+            ))
+            .into());
+        }
+        if board == Processor::X86_64 {
+            in_styles(scenes, wanted, styles::styles, json)?;
+            continue;
+        }
+        let frames = scenes.iter().map(|scene| wanted(scene).len() * board_styles::STYLES.len()).sum::<usize>();
+        let bar = report::progress(frames as u64, "counting instructions");
+        let costs = board_styles::measure(board, scenes, wanted, &|| bar.inc(1))?;
+        bar.finish_and_clear();
+        styled(&costs, json)?;
+    }
+    Ok(Outcome::Done)
+}
+
+/// Counts `scenes` by the `wanted` methods in `styles`, on this computer.
+fn in_styles(scenes: &[Scene], wanted: &dyn Fn(&Scene) -> Vec<Shader>, styles: fn(Shader) -> Vec<Named>, json: bool) -> Result<Outcome> {
     let bar = report::progress(scenes.iter().map(|scene| wanted(scene).len() as u64).sum(), "counting instructions");
     let counters = Counters::default();
     for scene in scenes {
         let costs = styles::measure(&counters, scene, &wanted(scene), styles, &|| bar.inc(1))?;
-        bar.suspend(|| costs.iter().try_for_each(|cost| if json { report::json(cost) } else { in_style(cost) }))?;
+        bar.suspend(|| styled(&costs, json))?;
     }
     bar.finish_and_clear();
     Ok(Outcome::Done)
@@ -236,17 +273,28 @@ fn redrawn(cost: &RedrawCost) -> Result<()> {
     ))
 }
 
-fn in_style(cost: &StyleCosts) -> Result<()> {
-    let plain = cost.instructions[0].unwrap_or(0).max(1) as f64;
-    let figures = cost.styles.iter().zip(&cost.instructions).map(|(name, count)| match count {
-        Some(count) => {
-            let (count, pixels) = (*count as f64, f64::from(cost.pixels.max(1)));
-            format!("{name} {:.1} per pixel, {:.2} times", count / pixels, count / plain)
+/// Prints costs of styles: as JSON, or a table for each scene, with a row for each style and a column for each method.
+fn styled(costs: &[StyleCosts], json: bool) -> Result<()> {
+    if json {
+        return costs.iter().try_for_each(report::json);
+    }
+    for costs in costs.chunk_by(|one, next| one.scene == next.scene) {
+        let Some(first) = costs.first() else { continue };
+        report::line(&format!("{}, {}: instructions per pixel, and how many times the plain frame", first.board, first.scene))?;
+        let cells = |cells: Vec<String>| cells.iter().map(|cell| format!("{cell:>17}")).collect::<String>();
+        report::line(&format!("  {:20}{}", "", cells(costs.iter().map(|cost| cost.shader.to_owned()).collect())))?;
+        for (number, style) in first.styles.iter().enumerate() {
+            let figure = |cost: &StyleCosts| match (cost.instructions[0], cost.instructions[number]) {
+                (Some(plain), Some(count)) => {
+                    let (count, pixels) = (count as f64, f64::from(cost.pixels.max(1)));
+                    format!("{:.1} {:6.2}", count / pixels, count / plain.max(1) as f64)
+                }
+                _ => "-".to_owned(),
+            };
+            report::line(&format!("  {style:20}{}", cells(costs.iter().map(figure).collect())))?;
         }
-        None => format!("{name} impossible"),
-    });
-    let figures = figures.collect::<Vec<_>>().join("; ").replacen(", 1.00 times", "", 1);
-    report::line(&format!("x86-64, {}, {}: {figures}", cost.scene, cost.shader))
+    }
+    Ok(())
 }
 
 /// The scenes that other renderers can draw; says why they cannot draw the others.
@@ -329,11 +377,12 @@ fn text(m: &Measurement) -> Result<()> {
     report::line(&format!("{} ({}), {}, {}: {all} instructions{error}", m.board.board_name(), m.cpu, m.scene, m.shader))?;
     m.budget.zip(m.choices).iter().try_for_each(report::choices)?;
     let s = m.by_stage;
-    let stages = [s.frame, s.vertex, s.cull, s.setup, s.span, s.pixel, s.edges, s.clear, s.transfer].map(report::grouped);
-    let [frame, vertex, cull, setup, span, pixel, edges, clear, transfer] = stages;
+    let stages = [s.frame, s.vertex, s.cull, s.setup, s.span, s.pixel, s.edges, s.output, s.clear, s.transfer].map(report::grouped);
+    let [frame, vertex, cull, setup, span, pixel, edges, output, clear, transfer] = stages;
     let edges = if s.edges > 0 { format!(", edges {edges}") } else { String::new() };
+    let output = if s.output > 0 { format!(", output {output}") } else { String::new() };
     report::line(&format!(
-        "  frame {frame}, vertex {vertex}, cull {cull}, set-up {setup}, span {span}, pixel {pixel}{edges}; clear {clear}, transfer {transfer}"
+        "  frame {frame}, vertex {vertex}, cull {cull}, set-up {setup}, span {span}, pixel {pixel}{edges}{output}; clear {clear}, transfer {transfer}"
     ))?;
     let rates = format!(
         "{:.2} per pixel, {:.1} of them in the inner loop; set-up {:.0} per triangle, {:.1} per span",
