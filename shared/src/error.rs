@@ -54,7 +54,8 @@ pub enum RenderError {
         /// The number of tables that are needed.
         need: usize,
     },
-    /// Antialiasing was turned on, or the stream (mesh file) states lines along outlines, but the layout has no room for them; set [`Layout::antialias`](crate::Layout::antialias).
+    /// Antialiasing was turned on, or the stream (mesh file) states lines along outlines, but the layout has no room for them; set
+    /// [`Layout::antialias`](crate::Layout::antialias).
     AntialiasMemory,
     /// Antialiasing was turned on, but the stream (mesh file) does not have the neighbours of its triangles; write it by
     /// `microphong convert --antialias`.

@@ -164,7 +164,8 @@ impl Layout {
     }
 
     /// Sets the numbers of vertices, triangles, materials and objects to what the scene in the mesh file `stream` needs, and makes room for
-    /// antialiasing if the scene has lines along outlines. All other values stay. This suits programs that can allocate memory when they run; a `static` needs numbers that are known at compile time.
+    /// antialiasing if the scene has lines along outlines. All other values stay. This suits programs that can allocate memory when they run; a
+    /// `static` needs numbers that are known at compile time.
     #[must_use]
     pub fn with_room_for(self, stream: &Stream<'_>) -> Self {
         let whole = [Instance { first_mesh: 0, meshes: stream.meshes.len() as u16, material: 0, reserved: 0 }];

@@ -20,8 +20,8 @@ const ALL: &str = "animation,antialias,colours,light-shapes,lights,near-lights,o
 
 const SCENES: [&str; 8] = ["teapot", "torus", "sphere-40", "peer-sphere-plastic", "peer-sphere-lights", "gauges", "board", "sensor"];
 
-/// Streams of the scenes, one without lights, one that is seen by a local viewer, one in the light of a spotlight, one with lines along outlines, and one
-/// in the light of the sky.
+/// Streams of the scenes, one without lights, one that is seen by a local viewer, one in the light of a spotlight, one with lines along outlines, and
+/// one in the light of the sky.
 fn streams() -> Vec<(String, StreamBytes)> {
     let mut streams: Vec<_> = SCENES.map(|name| (name.to_owned(), scene::load(name).unwrap().stream)).into();
     let teapot = scene::load("teapot").unwrap().stream;

@@ -31,9 +31,7 @@ pub(crate) fn hemisphere() -> [Light; 2] {
 
 /// The scene of this name in the light of `lights`.
 pub(crate) fn lit(name: &str, lights: &[Light]) -> StreamBytes {
-    let mut parts = Parts::of(&scene::load(name).unwrap().stream).unwrap();
-    parts.lights = lights.to_vec();
-    StreamBytes::from(&parts.stream(|_| ())[..])
+    scene::load(name).unwrap().stream.with_lights(lights).unwrap()
 }
 
 #[test]

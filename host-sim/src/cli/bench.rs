@@ -61,8 +61,8 @@ pub(crate) struct Arguments {
     #[arg(long)]
     peers: bool,
     /// Count frames in several styles. On this computer: with antialiasing, with lines along outlines, and with interpolation in perspective. On
-    /// mps2-an385 and mps2-an386 also: under near lights with a range or a cone, under 2 to 8 lights and the light of the sky, with gamma, and in each
-    /// pixel format.
+    /// mps2-an385 and mps2-an386 also: under near lights with a range or a cone, under 2 to 8 lights and the light of the sky, with gamma, and in
+    /// each pixel format.
     #[arg(long, conflicts_with_all = ["antialias", "report", "peers"])]
     styles: bool,
     /// Count how many instructions are saved by skipping invisible work, for each kind of work, on this computer.
@@ -159,6 +159,8 @@ pub(crate) fn run(arguments: &Arguments) -> Result<Outcome> {
         return in_styles(&scenes, &wanted, styles::skips, arguments.json);
     }
     if arguments.styles {
+        // Lines are one of the styles.
+        let scenes: Vec<_> = scenes.into_iter().map(|scene| Scene { stream: scene.stream.without_outlines(), ..scene }).collect();
         return on_boards(&boards(arguments, Processor::X86_64), &scenes, &wanted, arguments.json);
     }
     let boards = boards(arguments, Processor::CortexM3);

@@ -46,8 +46,8 @@ use std::path::{Path, PathBuf};
 /// The mesh is centred and scaled to a sphere of radius 1. A single closed convex mesh is marked, so that it is drawn without depth test. This does not
 /// change its picture.
 ///
-/// A .toml file is a scripted scene: it describes objects, lights, the camera and their movements. Only --output, --board, --format, --count, --antialias,
-/// --outlines, --outlines-alone and --json apply to it. Three examples are in tests/scenes.
+/// A .toml file is a scripted scene: it describes objects, lights, the camera and their movements. Only --output, --board, --format, --count,
+/// --antialias, --outlines, --outlines-alone and --json apply to it. Three examples are in tests/scenes.
 #[derive(clap::Args)]
 #[command(after_help = EXAMPLES)]
 pub(crate) struct Arguments {

@@ -6,8 +6,8 @@ use microphong::Outlines;
 /// The lines that are wanted.
 #[derive(clap::Args)]
 pub(crate) struct OutlineOptions {
-    /// Lines of this colour along outlines: where a surface ends, its shading jumps, or two surfaces cut each other. They take the place of those that
-    /// the scene states.
+    /// Lines of this colour along outlines: where a surface ends, its shading jumps, or two surfaces cut each other. They take the place of those
+    /// that the scene states.
     #[arg(long, value_name = "RRGGBB", value_parser = parse::bytes)]
     outlines: Option<[u8; 3]>,
     /// Lines of --outlines on the background, without the surfaces.

@@ -9,8 +9,8 @@
 //!    direction of the neighbour that is seen there, in one byte. The depth of both pixels tells whether the edge can be seen between them.
 //! 3. [`mix`] adds that share of the neighbour's colour to each noted pixel.
 //!
-//! Instead of being mixed, edges can be drawn as lines of one colour ([`Outlines`](crate::Outlines)): then the share is the one that a line along the edge, one pixel
-//! wide, covers of both pixels.
+//! Instead of being mixed, edges can be drawn as lines of one colour ([`Outlines`](crate::Outlines)): then the share is the one that a line along the
+//! edge, one pixel wide, covers of both pixels.
 //!
 //! A pixel keeps the largest share that any edge notes, so the order of edges changes nothing. A pixel is mixed with the colours that its neighbours
 //! had before the pass, and with pixels of the rows above and below the band, so the height of bands changes nothing either.

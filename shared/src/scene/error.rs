@@ -99,7 +99,8 @@ pub(crate) const NO_EDGE_MEMORY: &str = "the layout has no memory for outlines; 
 /// What `Neighbours` says.
 pub(crate) const NO_NEIGHBOURS: &str = "the stream has no neighbours of triangles; make it with `microphong convert --antialias`";
 
-/// The reason why edges cannot be found, to be smoothed or to be drawn as lines. The first is a setting of the renderer, the second belongs to the scene.
+/// The reason why edges cannot be found, to be smoothed or to be drawn as lines. The first is a setting of the renderer, the second belongs to the
+/// scene.
 #[derive(Clone, Copy, Debug)]
 pub(crate) enum NoEdges {
     /// The program lacks the cargo feature.

@@ -453,9 +453,9 @@ impl<'a> Scene<'a> {
         self.outlines
     }
 
-    /// Draws antialiased lines along outlines, or none. An outline is where a surface ends (silhouette), where its shading jumps (crease), or where two
-    /// surfaces cut each other. The stream (mesh file) says which lines the scene has at first. In formats of one bit, of the two pixels that share a
-    /// line the one that it covers more gets its colour. Lines take the place of [antialiasing](crate::Renderer::set_antialias).
+    /// Draws antialiased lines along outlines, or none. An outline is where a surface ends (silhouette), where its shading jumps (crease), or where
+    /// two surfaces cut each other. The stream (mesh file) says which lines the scene has at first. In formats of one bit, of the two pixels that
+    /// share a line the one that it covers more gets its colour. Lines take the place of [antialiasing](crate::Renderer::set_antialias).
     ///
     /// # Errors
     /// The scene keeps the lines that it has.
