@@ -190,7 +190,9 @@ fn with_libraries(folder: &Folder, obj: Obj) -> Result<Contents> {
 fn texture(name: &str, folder: &Folder, remarks: &mut Vec<String>) -> Option<Texture> {
     // Rows of an image count from the top, and places from the bottom.
     let transform = [[1.0, 0.0, 0.0], [0.0, -1.0, 1.0]];
-    let image = folder.read(name).and_then(|(path, bytes)| Image::read(&bytes).with_context(|| path.display().to_string()));
+    let image = folder
+        .read(name)
+        .and_then(|(path, bytes)| Image::read(&bytes).with_context(|| path.strip_prefix(".").unwrap_or(&path).display().to_string()));
     let image = image.map_err(|error| remarks.push(format!("a texture is left out: {error:#}"))).ok()?;
     Some(Texture { image: Arc::new(image), transform })
 }

@@ -111,7 +111,8 @@ pub(crate) fn draw<C: Pixel>(
         return None;
     }
     let lengths = Lengths::of(setup)?;
-    if LIGHTS && reflectance.lights() > 1 {
+    // Greys have one channel, in which nothing is summed.
+    if LIGHTS && !C::GRAY && reflectance.lights() > 1 {
         return if reflectance.sums_lights() {
             summed::draw(setup, shading, &lengths, tables, band)
         } else {
