@@ -142,9 +142,8 @@ impl Reader<'_> {
             return Ok(());
         }
         for (semantic, _) in primitive.attributes() {
-            match semantic {
-                Semantic::Colors(1..) => drop(self.scene.ignored.insert("further colours of vertices")),
-                _ => {}
+            if matches!(semantic, Semantic::Colors(1..)) {
+                self.scene.ignored.insert("further colours of vertices");
             }
         }
         if primitive.morph_targets().next().is_some() {

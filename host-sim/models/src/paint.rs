@@ -4,7 +4,7 @@
 //! a face takes the mean of its colours, faces of nearly equal colours share a material, and the report says how far they are from their texture.
 
 use crate::{
-    mesh::{Face, Soup, Submesh},
+    mesh::{Face, Soup},
     mtl::Material,
     number::grouped,
     texture::Texture,
@@ -59,12 +59,16 @@ pub(crate) fn paint(soup: &mut Soup, materials: &mut Vec<Option<Material>>, text
     if most == 0 {
         return Painted::default();
     }
-    let seen: Vec<Option<Vec<V3>>> = soup.faces.iter().map(|face| colours(soup, face, textures)).collect();
+    // Points are computed twice, because those of all faces would take much memory.
+    let mut keys = Vec::with_capacity(soup.faces.len());
     let mut wanted: HashMap<(usize, Colour), usize> = HashMap::new();
-    for (face, seen) in soup.faces.iter().zip(&seen) {
-        if let Some(seen) = seen {
-            *wanted.entry((face.submesh.material, rounded(mean(seen)))).or_default() += seen.len();
+    for face in &soup.faces {
+        let points = colours(soup, face, textures);
+        let key = points.as_ref().map(|points| (face.submesh.material, rounded(mean(points))));
+        if let (Some(key), Some(points)) = (key, points) {
+            *wanted.entry(key).or_default() += points.len();
         }
+        keys.push(key);
     }
     let palette = Palette::of(&wanted, most);
     let first = materials.len();
@@ -76,16 +80,18 @@ pub(crate) fn paint(soup: &mut Soup, materials: &mut Vec<Option<Material>>, text
     }
     let mut painted = Painted { materials: palette.colours.len(), ..Painted::default() };
     let (mut sum, mut count) = (0.0, 0usize);
-    for (face, seen) in soup.faces.iter_mut().zip(&seen) {
-        let Some(seen) = seen else { continue };
-        let index = palette.index[&(face.submesh.material, rounded(mean(seen)))];
+    let indices: Vec<Option<usize>> = keys.iter().map(|key| palette.index.get(&(*key)?).copied()).collect();
+    for (face, index) in soup.faces.iter().zip(&indices) {
+        let (Some(index), Some(points)) = (*index, colours(soup, face, textures)) else { continue };
         let (_, colour) = palette.colours[index];
-        let distances = seen.iter().map(|&point| distance(point, colour));
+        let distances = points.iter().map(|&point| distance(point, colour));
         painted.faces += 1;
         painted.far += usize::from(distances.clone().fold(0.0, f64::max) > FAR);
         sum += distances.map(|distance| distance * distance).sum::<f64>();
-        count += seen.len();
-        face.submesh = Submesh { material: first + index, ..face.submesh };
+        count += points.len();
+    }
+    for (face, index) in soup.faces.iter_mut().zip(indices) {
+        face.submesh.material = index.map_or(face.submesh.material, |index| first + index);
     }
     painted.rms = if count > 0 { (sum / count as f64).sqrt() } else { 0.0 };
     drop_unused(soup, materials);
@@ -157,15 +163,17 @@ impl Palette {
         wanted.sort_by_key(|&(key, weight)| (usize::MAX - weight, key));
         let mut radius = NEAREST;
         loop {
-            let palette = Self::within(&wanted, radius);
-            if palette.colours.len() <= most || radius > 1.0 {
+            // Within a radius of all colours each material has one.
+            let most = if radius > 1.0 { usize::MAX } else { most };
+            if let Some(palette) = Self::within(&wanted, radius, most) {
                 return palette;
             }
             radius *= 1.25;
         }
     }
 
-    fn within(wanted: &[((usize, Colour), usize)], radius: f64) -> Self {
+    /// A palette of colours that are farther apart than `radius`; `None` if there are more than `most`.
+    fn within(wanted: &[((usize, Colour), usize)], radius: f64, most: usize) -> Option<Self> {
         // The sum of all colours that one stands for, and their weight.
         let mut sums: Vec<(usize, V3, V3, f64)> = Vec::new();
         let mut index = HashMap::new();
@@ -175,6 +183,9 @@ impl Palette {
             let nearest = sums.iter().enumerate().filter(near).min_by(|(_, a), (_, b)| distance(a.1, own).total_cmp(&distance(b.1, own)));
             let number = nearest.map_or(sums.len(), |(number, _)| number);
             if number == sums.len() {
+                if number == most {
+                    return None;
+                }
                 sums.push((material, own, [0.0; 3], 0.0));
             }
             let (_, _, sum, total) = &mut sums[number];
@@ -182,7 +193,7 @@ impl Palette {
             index.insert((material, colour), number);
         }
         let colours = sums.into_iter().map(|(material, _, sum, total)| (material, scale(sum, 1.0 / total))).collect();
-        Self { colours, index }
+        Some(Self { colours, index })
     }
 }
 
@@ -199,7 +210,7 @@ fn drop_unused(soup: &mut Soup, materials: &mut Vec<Option<Material>>) {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::mesh::{Corner, Smoothing};
+    use crate::mesh::{Corner, Smoothing, Submesh};
 
     /// One triangle for each colour.
     fn triangles(colours: &[V3]) -> Soup {
