@@ -25,7 +25,7 @@ pub struct DiffuseOnly(pub i32);
 pub struct Summed(pub [i32; 3]);
 
 /// Fraction bits of [`Summed`].
-pub(crate) const SUMMED: u32 = CHANNEL - 3;
+pub const SUMMED: u32 = CHANNEL - 3;
 
 impl From<DiffuseOnly> for WithHighlight {
     #[inline]

@@ -24,7 +24,7 @@ use core::ops::Deref;
 use zerocopy::{FromBytes, Immutable, IntoBytes, KnownLayout};
 
 /// [`Reflectance::lights`] where the diffuse light of all lights is summed.
-pub(crate) const SUMMED: u8 = 3;
+pub const SUMMED: u8 = 3;
 
 /// Largest level of a node, Q9.7.
 pub const FULL: i32 = 255 << LEVEL;
