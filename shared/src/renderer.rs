@@ -259,7 +259,8 @@ impl<'a, C: Pixel> Renderer<'a, C> {
     ///
     /// For [`Light`](crate::pixel::Light) the pass over the finished band corrects all colours, which takes 21 instructions more for each pixel
     /// of the picture on a Cortex-M3. In pixels that are drawn directly, such as `Rgb565` or `Gray8`, the correction takes no time for greys, and
-    /// for materials whose colours are multiples of one another; all other materials take several times as long.
+    /// for materials whose colours are multiples of one another; methods that look up highlights need one light for that. All else takes several times
+    /// as long.
     pub fn set_gamma(&mut self, gamma: Option<&'static Gamma>) {
         self.colours.gamma = gamma;
         self.scene.set_stale();

@@ -1104,7 +1104,7 @@ fn convert_takes_materials() {
     place.file("two.obj", two).file("paint.mtl", "newmtl red\nKd 1 0 0\nnewmtl blue\nKd 0 0 1\nmap_Kd blue.png\n");
     let said = place.succeeds(&["convert", "two.obj"]);
     assert!(said.contains("2 materials") && said.contains("left out: texture coordinates"), "{said}");
-    assert!(said.contains("a texture is left out: cannot read blue.png; put it beside the mesh"), "{said}");
+    assert!(said.contains("the texture blue.png is left out: cannot read blue.png; put it beside the mesh"), "{said}");
     assert!(said.contains("Layout::new(320, 16).vertices(15).triangles(5).materials(2)"), "{said}");
     let json = |arguments: &[&str]| serde_json::from_str::<serde_json::Value>(place.succeeds(arguments).trim()).expect("JSON");
     let line = json(&["convert", "two.obj", "--json"]);

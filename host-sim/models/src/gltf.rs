@@ -13,7 +13,7 @@ use crate::{
     mtl::Material,
     obj::LARGEST,
     pbr,
-    texture::{Image, Texture},
+    texture::{Images, Texture},
     vector::{V3, add, apply, scale, unit},
 };
 use accessor::{Bytes, Kind};
@@ -22,10 +22,7 @@ use compressed::Draco;
 pub(crate) use document::is_gltf;
 use gltf::{Document, Node, Primitive, Semantic, material::AlphaMode, mesh::Mode, texture::Info};
 use pose::{Skin, Transform};
-use std::{
-    collections::{BTreeSet, HashMap, HashSet},
-    sync::Arc,
-};
+use std::collections::{BTreeSet, HashSet};
 
 /// The contents of a glTF file.
 #[derive(Clone, Debug, Default)]
@@ -61,7 +58,7 @@ pub(crate) fn parse(bytes: &[u8], folder: &Folder) -> Result<Scene> {
         scene: Scene { ignored: besides(&document), ..Scene::default() },
         numbers: Vec::new(),
         folder,
-        images: HashMap::new(),
+        images: Images::default(),
     };
     let places = pose::of_nodes(&document);
     let mut seen = HashSet::new();
@@ -130,8 +127,8 @@ struct Reader<'a> {
     /// The number in the file of each material of the scene.
     numbers: Vec<Option<usize>>,
     folder: &'a Folder,
-    /// Images by their numbers in the file; `None` if one cannot be read.
-    images: HashMap<usize, Option<Arc<Image>>>,
+    /// Images by their numbers in the file.
+    images: Images,
 }
 
 impl Reader<'_> {
@@ -176,11 +173,14 @@ impl Reader<'_> {
         let mut used = vec![false; positions.len()];
         triangles.iter().flatten().for_each(|&vertex| used[vertex] = true);
         let count = positions.len();
-        let colours = attributes.colours()?.filter(|colours| colours.len() == count);
-        let places = match colour_texture(&primitive.material()) {
-            Some(info) => attributes.get::<2>(&Semantic::TexCoords(places_of(&info)), Kind::Shares)?.filter(|places| places.len() == count),
-            None => None,
-        };
+        // A mesh is of use without its colours.
+        let remarks = &mut self.scene.remarks;
+        let mut left_out = |error: anyhow::Error| remarks.push(format!("{place}: what gives it colours is left out: {error:#}"));
+        let colours = attributes.colours().map_err(&mut left_out).ok().flatten().filter(|colours| colours.len() == count);
+        let places = colour_texture(&primitive.material()).and_then(|info| {
+            let places = attributes.get::<2>(&Semantic::TexCoords(places_of(&info)), Kind::Places);
+            places.map_err(&mut left_out).ok().flatten().filter(|places| places.len() == count)
+        });
         let submesh = Submesh { object: self.scene.objects.len() - 1, material: self.material(primitive) };
         let Scene { soup, faults, .. } = &mut self.scene;
         let (first, first_normal) = (soup.positions.len(), soup.normals.len());
@@ -236,17 +236,11 @@ impl Reader<'_> {
             ));
             return None;
         };
-        if let Some(known) = self.images.get(&source.index()) {
-            let image = known.clone()?;
-            return Some(Texture { image, transform: transform_of(info) });
-        }
-        let image = self.bytes.image(&source, self.folder).and_then(|bytes| Image::read(&bytes));
-        let image = image
-            .map(Arc::new)
-            .map_err(|error| self.scene.remarks.push(format!("the image {} is left out: {error:#}", source.index())))
-            .ok();
-        self.images.insert(source.index(), image.clone());
-        Some(Texture { image: image?, transform: transform_of(info) })
+        let Self { images, bytes, document, folder, scene, .. } = self;
+        let number = source.index();
+        let left_out = |error| scene.remarks.push(format!("the image {number} is left out: {error:#}"));
+        let image = images.read(&number.to_string(), || bytes.image(document, number, folder), left_out)?;
+        Some(Texture { image, transform: transform_of(info) })
     }
 
     /// The number of a primitive's material in the scene; notes what of it is left out.
@@ -323,7 +317,9 @@ impl Attributes<'_> {
             Semantic::TexCoords(_) => "texture coordinates",
             _ => "attributes",
         };
-        if let Some(compressed) = self.draco.map(|draco| draco.attribute(&semantic.to_string())).transpose().context(name)?.flatten() {
+        if let Some(compressed) =
+            self.draco.map(|draco| draco.attribute(&semantic.to_string(), kind == Kind::Shares)).transpose().context(name)?.flatten()
+        {
             return Ok(Some(compressed));
         }
         let Some(accessor) = self.primitive.get(semantic) else { return Ok(None) };

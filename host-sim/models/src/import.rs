@@ -2,6 +2,7 @@
 
 use crate::{
     faults::{COMPUTED_NORMAL, Faults, TURNED},
+    fields::quoted,
     files::{self, Folder, Missing},
     foreign, gltf,
     look::Surface,
@@ -13,10 +14,10 @@ use crate::{
     ply::{self, Ply},
     stl::{self, Stl},
     text,
-    texture::{Image, Texture},
+    texture::{Images, Texture},
 };
 use anyhow::{Context, Result, bail};
-use std::{collections::BTreeSet, path::Path, sync::Arc};
+use std::{collections::BTreeSet, path::Path};
 
 /// A mesh from a file.
 #[derive(Clone, Debug)]
@@ -182,19 +183,18 @@ fn with_libraries(folder: &Folder, obj: Obj) -> Result<Contents> {
     if !unknown.is_empty() {
         remarks.push(format!("materials that no file defines have the colour of the command line: {}", unknown.join(", ")));
     }
-    let textures = materials.iter().map(|material| texture(material.as_ref()?.texture.as_ref()?, folder, &mut remarks)).collect();
+    let images = &mut Images::default();
+    let textures = materials.iter().map(|material| texture(material.as_ref()?.texture.as_ref()?, images, folder, &mut remarks)).collect();
     Ok(Contents { soup, objects, materials, textures, ignored, faults, remarks })
 }
 
 /// A texture of this name, or nothing if it cannot be read, which is said.
-fn texture(name: &str, folder: &Folder, remarks: &mut Vec<String>) -> Option<Texture> {
+fn texture(name: &str, images: &mut Images, folder: &Folder, remarks: &mut Vec<String>) -> Option<Texture> {
     // Rows of an image count from the top, and places from the bottom.
     let transform = [[1.0, 0.0, 0.0], [0.0, -1.0, 1.0]];
-    let image = folder
-        .read(name)
-        .and_then(|(path, bytes)| Image::read(&bytes).with_context(|| path.strip_prefix(".").unwrap_or(&path).display().to_string()));
-    let image = image.map_err(|error| remarks.push(format!("a texture is left out: {error:#}"))).ok()?;
-    Some(Texture { image: Arc::new(image), transform })
+    let left_out = |error| remarks.push(format!("the texture {} is left out: {error:#}", quoted(name)));
+    let image = images.read(name, || folder.read(name).map(|(_, bytes)| bytes), left_out)?;
+    Some(Texture { image, transform })
 }
 
 /// The names of the files of a `mtllib`: one name that may have blanks in it, or several names. Some programs write quotes around them.

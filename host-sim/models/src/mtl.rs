@@ -132,7 +132,7 @@ fn file_of(statement: &str) -> String {
     while words.next_if(|word| word.starts_with('-')).is_some() {
         while words.next_if(|word| word.parse::<f64>().is_ok() || ["on", "off"].contains(word)).is_some() {}
     }
-    words.collect::<Vec<_>>().join(" ")
+    words.collect::<Vec<_>>().join(" ").trim_matches('"').to_owned()
 }
 
 /// Three numbers, or one for all channels; `None` where the colour is a spectrum.

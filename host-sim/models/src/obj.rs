@@ -164,9 +164,10 @@ pub fn parse(text: &str) -> Result<Obj> {
             several => format!("{} lines that are no statements of OBJ are left out; the first: {first}", grouped(several)),
         });
     }
-    // All or none: a vertex without a colour would be of another kind.
+    // All or none: a vertex without a colour would be of another kind. Numbers above 1 tell that 255 is full.
     if colours.iter().all(Option::is_some) {
-        obj.soup.colours = colours.into_iter().flatten().collect();
+        let full = if colours.iter().flatten().flatten().any(|&c| c > 1.0) { 255.0 } else { 1.0 };
+        obj.soup.colours = colours.into_iter().flatten().map(|colour| colour.map(|c| c / full)).collect();
     }
     let (with_colours, places) = (!obj.soup.colours.is_empty(), obj.soup.places.len());
     for corner in obj.soup.faces.iter_mut().flat_map(|face| &mut face.corners) {
@@ -319,12 +320,11 @@ fn vector<'a>(mut words: impl Iterator<Item = &'a str>) -> Result<[f64; 3]> {
     Ok(vector)
 }
 
-/// The colour behind the coordinates of a vertex: three numbers from 0 to 1, or to 255.
+/// The three numbers of a colour behind the coordinates of a vertex.
 fn colour<'a>(words: impl Iterator<Item = &'a str>) -> Option<[f64; 3]> {
     let numbers: Vec<f64> = words.map(str::parse).collect::<Result<_, _>>().ok()?;
     let colour: [f64; 3] = numbers.try_into().ok()?;
-    let full = if colour.iter().any(|&c| c > 1.0) { 255.0 } else { 1.0 };
-    colour.iter().all(|c| (0.0..=255.0).contains(c)).then(|| colour.map(|c| c / full))
+    colour.iter().all(|c| (0.0..=255.0).contains(c)).then_some(colour)
 }
 
 /// A place on a texture.

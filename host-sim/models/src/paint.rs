@@ -46,10 +46,7 @@ impl Painted {
             format!("{} of {} faces are farther than 12 of 255 from their colours", grouped(far), grouped(faces))
         };
         (faces > 0).then(|| {
-            format!(
-                "{several} made for the colours of faces, of textures and vertices: {distance}, the root of the mean square is {:.1}",
-                255.0 * rms
-            )
+            format!("{several} made for colours of textures and vertices: {distance}, the root of the mean square is {:.1}", 255.0 * rms)
         })
     }
 }

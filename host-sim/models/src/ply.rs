@@ -193,7 +193,9 @@ fn ignored(header: &Header) -> BTreeSet<&'static str> {
         elements.clone().filter_map(|(name, element)| (name == "vertex" && is_part(element)).then_some("colours of vertices"));
     let properties = elements.flat_map(|(name, element)| element.properties.keys().map(move |property| (name, property)));
     let parts = properties.filter_map(|(name, property)| match (name.as_str(), property.trim_start_matches("diffuse_")) {
-        ("vertex", "alpha" | "r" | "g" | "b") => Some("colours of vertices"),
+        ("vertex", "alpha") => Some("transparency"),
+        ("vertex", "r" | "g" | "b") => Some("colours of vertices"),
+        ("vertex", "red" | "green" | "blue") if property.starts_with("diffuse_") => Some("colours of vertices"),
         ("face", "red" | "green" | "blue" | "alpha") => Some("colours of faces"),
         ("vertex", "s" | "t" | "u" | "v" | "texture_u" | "texture_v") | ("face", "texcoord") => Some("texture coordinates"),
         _ => None,
@@ -265,9 +267,9 @@ fn number(property: &Property) -> Option<f64> {
 /// The number that stands for all of a colour in this type.
 fn full(property: &Property) -> f64 {
     match property {
-        Property::UChar(_) => 255.0,
         Property::UShort(_) => 65_535.0,
-        _ => 1.0,
+        Property::Float(_) | Property::Double(_) => 1.0,
+        _ => 255.0,
     }
 }
 

@@ -2,10 +2,12 @@
 
 use crate::vector::V3;
 use anyhow::{Context, Result, bail, ensure};
-use std::{io::Cursor, sync::Arc};
+use std::{collections::HashMap, io::Cursor, sync::Arc};
 
-/// Largest number of pixels of an image.
+/// Largest number of pixels of all images of a model.
 const LARGEST: usize = 1 << 26;
+/// The error for images that would take too much memory.
+const TOO_MANY: &str = "the images of the model have more than 67,108,864 pixels; make them smaller";
 
 /// An image as colours of sRGB.
 #[derive(Debug)]
@@ -23,38 +25,66 @@ pub(crate) struct Texture {
     pub(crate) transform: [[f64; 3]; 2],
 }
 
+/// The images of a model, each of which is read once.
+pub(crate) struct Images {
+    known: HashMap<String, Option<Arc<Image>>>,
+    /// Number of pixels that may still be read.
+    room: usize,
+}
+
+impl Default for Images {
+    fn default() -> Self {
+        Self { known: HashMap::new(), room: LARGEST }
+    }
+}
+
+impl Images {
+    /// The image of this name, whose file is read by `bytes`; `None` if it cannot be read, which is said once.
+    pub(crate) fn read(
+        &mut self,
+        name: &str,
+        bytes: impl FnOnce() -> Result<Vec<u8>>,
+        say: impl FnOnce(anyhow::Error),
+    ) -> Option<Arc<Image>> {
+        if let Some(known) = self.known.get(name) {
+            return known.clone();
+        }
+        let image = bytes().and_then(|bytes| Image::read(&bytes, self.room)).map(Arc::new).map_err(say).ok();
+        self.room -= image.as_ref().map_or(0, |image| image.pixels.len());
+        self.known.insert(name.to_owned(), image.clone());
+        image
+    }
+}
+
 impl Image {
-    /// Reads a PNG or JPEG file.
-    ///
-    /// # Errors
-    /// When it is neither, is damaged, or is too large.
-    pub(crate) fn read(bytes: &[u8]) -> Result<Self> {
+    /// Reads a PNG or JPEG file of at most `most` pixels.
+    fn read(bytes: &[u8], most: usize) -> Result<Self> {
         if bytes.starts_with(b"\x89PNG") {
-            return Self::png(bytes);
+            return Self::png(bytes, most);
         }
         if bytes.starts_with(&[0xFF, 0xD8]) {
-            return Self::jpeg(bytes);
+            return Self::jpeg(bytes, most);
         }
-        bail!("the image is neither PNG nor JPEG; save it as one of them")
+        bail!("the image is neither PNG nor JPEG; save it as one of them, and name that one in the model")
     }
 
-    fn png(bytes: &[u8]) -> Result<Self> {
+    fn png(bytes: &[u8], most: usize) -> Result<Self> {
         let damaged = "the image is damaged";
         let mut decoder = png::Decoder::new(Cursor::new(bytes));
         decoder.set_transformations(png::Transformations::normalize_to_color8());
         let mut reader = decoder.read_info().context(damaged)?;
-        let size = reader.output_buffer_size().filter(|&size| size <= 4 * LARGEST).context("the image has too many pixels")?;
+        let size = reader.output_buffer_size().filter(|&size| size <= 4 * most).context(TOO_MANY)?;
         let mut data = vec![0; size];
         let info = reader.next_frame(&mut data).context(damaged)?;
         Self::of(info.width as usize, &data[..info.buffer_size()], info.color_type.samples())
     }
 
-    fn jpeg(bytes: &[u8]) -> Result<Self> {
+    fn jpeg(bytes: &[u8], most: usize) -> Result<Self> {
         let mut decoder = zune_jpeg::JpegDecoder::new(Cursor::new(bytes));
         let damaged = |_| anyhow::anyhow!("the image is damaged, or a kind of JPEG that is not read; save it as PNG");
         decoder.decode_headers().map_err(damaged)?;
         let (width, height) = decoder.dimensions().context("the image is damaged")?;
-        ensure!(width * height <= LARGEST, "the image has too many pixels");
+        ensure!(width * height <= most, TOO_MANY);
         let data = decoder.decode().map_err(damaged)?;
         Self::of(width, &data, data.len() / (width * height).max(1))
     }

@@ -36,7 +36,8 @@ pub(crate) struct MeshOptions {
     /// only for models that you trust.
     #[arg(long)]
     allow_outside: bool,
-    /// Number of materials, at most, that are made for colours of textures and of vertices. Each face takes the material that is nearest to its colour.
+    /// Number of materials, at most, that are made for colours of textures and of vertices, but one for each material that has such colours. Each face
+    /// takes the material that is nearest to its colour.
     /// A material takes about 2.5 KB of a program's memory. With 0, these colours are left out.
     #[arg(long, visible_alias = "colors", value_name = "MATERIALS", default_value_t = COLOURS)]
     colours: usize,

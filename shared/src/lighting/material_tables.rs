@@ -5,7 +5,7 @@ use crate::{
     format::{BIAS, CHANNEL, COSINE, INTENSITY, LEVEL, WALK},
     lighting::{
         constant_lights::{FACTOR, OneLightRamp, OneLightRgb, SummedRgb, TwoLightsRgb},
-        reflectance::{LitMaterial, Reflectance},
+        reflectance::{FULL, LitMaterial, Reflectance},
     },
     math::vector::zip,
     pixel::{Pixel, by_rows::ByTurns, gamma::Gamma, half_step, ramps::Ramps, steps},
@@ -45,8 +45,9 @@ pub fn fill_ramps<C: Pixel>(ramps: &mut C::Ramps, reflectance: &Reflectance, dit
         let ([least, most], [gains, ..]) = (reflectance.ramp, &reflectance.gains);
         ramps.fill(dither, |i, threshold| {
             let more = ((i as i32 - BIAS) << LEVEL) - least;
-            // By the share of each channel in the one that has most.
-            let share = |level, diffuse: u16| level + (more * i32::from(diffuse)).checked_div(most).unwrap_or(0);
+            // By the share of each channel in the one that has most. Guards beyond 255 stay within the word in which colours are rounded.
+            let share =
+                |level: i32, diffuse: u16| (level + (more * i32::from(diffuse)).checked_div(most).unwrap_or(0)).min(FULL + FULL / 2);
             mixed::<C>(zip(reflectance.ambient, gains.diffuse, share), threshold).stored()
         });
         return;

@@ -202,7 +202,7 @@ impl Reflectance {
         let is_plain = !LIGHT_SHAPES || !lights.iter().any(Light::has_shape);
         let is_sky = |light: &Light| LIGHT_SHAPES && light.kind == SKY;
         // Loops for several lights have three channels.
-        let are_several = LIGHTS && lights.len() > 1;
+        let are_several = LIGHTS && lights.len() > 1 && lights.iter().all(|light| light.kind != POINT);
         let one_channel = !COLOURS || are_one_channel && (is_gray || !(holds_levels && are_several));
         self.depth = depth;
         self.quarter = 0;
@@ -216,7 +216,9 @@ impl Reflectance {
         }
         let total = self.total(channels.is_checkered, lights.len());
         self.table = 0;
-        let excess = (total >> (9 + LEVEL)).checked_ilog2().map_or(0, |bits| bits + 1);
+        // Where light is summed, normals that are a little too long are not limited to 1: streams allow 1 + 2^-9.
+        let most = if are_several { total + (total >> 8) } else { total };
+        let excess = (most >> (9 + LEVEL)).checked_ilog2().map_or(0, |bits| bits + 1);
         self.excess = excess as u16;
         let fits = if one_channel { total < LARGEST } else { excess == 0 };
         let (ambient, diffuse) = (self.ambient, self.gains[0].diffuse);

@@ -24,6 +24,8 @@ pub(super) enum Kind {
     Coordinates,
     /// From 0 to 1.
     Shares,
+    /// Coordinates on textures: from 0 to 1, or of any size if the file has a texture transform.
+    Places,
     /// Indices.
     Whole,
 }
@@ -69,13 +71,14 @@ impl Bytes {
         Ok(end.and_then(|end| self.buffers.get(view.buffer().index())?.get(view.offset()..end)))
     }
 
-    /// The bytes of an image.
-    pub(super) fn image(&self, image: &gltf::Image<'_>, folder: &Folder) -> Result<Vec<u8>> {
-        match image.source() {
-            gltf::image::Source::View { view, .. } => {
-                Ok(self.view(&view)?.context("it does not lie in its buffer; the file is damaged")?.to_vec())
-            }
-            gltf::image::Source::Uri { uri, .. } => of_uri(uri, folder),
+    /// The bytes of an image. What kind it is follows from them, and not from what the file says.
+    pub(super) fn image(&self, document: &Document, number: usize, folder: &Folder) -> Result<Vec<u8>> {
+        let image = document.as_json().images.get(number).context("there is no such image; the file is damaged")?;
+        let view = image.buffer_view.and_then(|view| document.views().nth(view.value()));
+        match (view, &image.uri) {
+            (Some(view), _) => Ok(self.view(&view)?.context("it does not lie in its buffer; the file is damaged")?.to_vec()),
+            (None, Some(uri)) => of_uri(uri, folder),
+            (None, None) => bail!("it has no bytes; export it with them"),
         }
     }
 
@@ -85,7 +88,8 @@ impl Bytes {
         let types = match kind {
             Kind::Coordinates if self.is_quantised => &QUANTISED[..],
             Kind::Coordinates => &FLOAT,
-            Kind::Shares => &SHARES,
+            Kind::Places if self.is_quantised => &QUANTISED[..],
+            Kind::Shares | Kind::Places => &SHARES,
             Kind::Whole => &WHOLE,
         };
         let dimensions = [Dimensions::Scalar, Dimensions::Vec2, Dimensions::Vec3, Dimensions::Vec4, Dimensions::Mat4];
@@ -96,7 +100,10 @@ impl Bytes {
         }
         ensure!(accessor.count() > 0, "accessor {number} is empty");
         let damaged = || anyhow!("accessor {number} does not lie in its buffer; the file is damaged");
-        let reader = Numbers { data: accessor.data_type(), is_share: accessor.normalized() || kind == Kind::Shares };
+        let reader = Numbers {
+            data: accessor.data_type(),
+            is_share: accessor.normalized() || kind == Kind::Shares || kind == Kind::Places && !self.is_quantised,
+        };
         let mut numbers = match accessor.view() {
             Some(view) => {
                 let bytes = self.view(&view)?.and_then(|bytes| bytes.get(accessor.offset()..)).ok_or_else(damaged)?;

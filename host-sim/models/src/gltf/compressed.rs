@@ -2,7 +2,7 @@
 
 use crate::files::LARGEST_FILE;
 use anyhow::{Context, Result, anyhow, bail, ensure};
-use draco_core::{DecoderBuffer, Mesh, MeshDecoder};
+use draco_core::{DataType, DecoderBuffer, Mesh, MeshDecoder};
 use gltf::{
     Document, Primitive,
     json::{Value, extensions},
@@ -119,8 +119,8 @@ impl Draco {
         self.mesh.faces().iter().flatten().map(|corner| corner.0 as usize).collect()
     }
 
-    /// An attribute by its name in the file, if it is among those that are compressed.
-    pub(super) fn attribute<const N: usize>(&self, name: &str) -> Result<Option<Vec<[f64; N]>>> {
+    /// An attribute by its name in the file, if it is among those that are compressed. Whole numbers may be shares.
+    pub(super) fn attribute<const N: usize>(&self, name: &str, is_share: bool) -> Result<Option<Vec<[f64; N]>>> {
         let Some((_, id)) = self.attributes.iter().find(|(known, _)| known == name) else { return Ok(None) };
         let attribute = self.mesh.attribute_by_unique_id(*id);
         let attribute = attribute.with_context(|| format!("{name} is not in its mesh of Draco; the file is damaged"))?;
@@ -130,6 +130,11 @@ impl Draco {
             attribute.num_components()
         );
         let numbers = attribute.read_f32s(self.mesh.num_points(), N);
-        Ok(Some(numbers.as_chunks().0.iter().map(|element| element.map(f64::from)).collect()))
+        let full = match attribute.data_type() {
+            DataType::Uint8 if is_share => 255.0,
+            DataType::Uint16 if is_share => 65_535.0,
+            _ => 1.0,
+        };
+        Ok(Some(numbers.as_chunks().0.iter().map(|element| element.map(|number| f64::from(number) / full)).collect()))
     }
 }

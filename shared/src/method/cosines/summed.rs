@@ -29,6 +29,7 @@ use crate::{
             quotient::{HalfReciprocal, LEVEL, NODE, PIXEL, Quotient, RANGE, numerator, plane},
             scale::Lengths,
         },
+        largest,
         node::is_steep,
     },
     pixel::{Pixel, by_rows::ByRows},
@@ -75,6 +76,8 @@ struct SummedLights {
     ending: Terms,
     /// The highlights that can be seen there.
     highlights: Terms,
+    /// Whether one of these highlights can be seen. They can unless leaving out is switched off.
+    is_visible: bool,
     /// Numbers of lights that reach the triangle without a highlight, and of lights that do not reach it.
     without: [u32; 2],
 }
@@ -111,6 +114,7 @@ impl SummedLights {
                 let half = setup.corner_cosines(half);
                 has_highlight = !setup.leaves_out_highlight(material, &half);
                 if has_highlight {
+                    lights.is_visible |= largest(&half) >= setup.highlight_threshold(material);
                     Term::add(&mut lights.highlights, numerator(setup, lookup, lengths, &half), material.factors(light).specular);
                 }
             }
@@ -133,7 +137,7 @@ pub(super) fn draw<C: Pixel>(
 ) -> Option<u32> {
     let (lookup, colours) = (QuotientLookup::new(tables.reflectance.table()?), tables.summed_rgb());
     let lights = &SummedLights::on(setup, shading, lengths, lookup, tables);
-    if is_steep(shading.exponent) && !lights.highlights.is_empty() {
+    if is_steep(shading.exponent) && lights.is_visible {
         return None;
     }
     let [without_highlight, without_light] = lights.without;
@@ -150,7 +154,7 @@ pub(super) fn draw<C: Pixel>(
 /// The numerators of sums of diffuse light.
 #[inline(never)]
 fn sums(setup: &TriangleSetup<'_>, lengths: &Lengths, corners: &[[i32; 3]; 3]) -> Plane<3> {
-    let node = |sum: i32| (sum + (1 << (LEVEL - NODE - 1))) >> (LEVEL - NODE);
+    let node = |sum: i32| sum.wrapping_add(1 << (LEVEL - NODE - 1)) >> (LEVEL - NODE);
     let nodes = map(*corners, |channel| map(lengths.apply(&channel), node));
     Nodes::<3, 3, RANGE>::new(nodes, LEVEL - NODE).fit(setup.gradients)
 }
