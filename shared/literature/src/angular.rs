@@ -7,8 +7,8 @@
 //! Cost: 3 additions and a comparison a pixel, twice a light. A row has 3 unit vectors, 2 pairs of sine and cosine, 3 arc tangents and 2 divisions to
 //! set up, with near lights twice as many. Error: the parabolas', 3.6 of 255 in the highlight and 6 in diffuse light (as printed: 66 and 13), and
 //! jumps: light jumps where rows begin on different edges. It also jumps, by the error of the parabolas, where the angle between the normals at both ends
-//! of a row falls below 2^-9. Domain: any lights; coarse meshes under near lights are off by up to 45 of 255. Of light from the sky, surfaces that face away from it get half, where they should
-//! get less: the parabolas end where a cosine is negative.
+//! of a row falls below 2^-9. Domain: any lights; coarse meshes under near lights are off by up to 45 of 255. Of light from
+//! the sky, surfaces that face away from it get half, where they should get less: the parabolas end where a cosine is negative.
 
 use crate::{
     arc::Arc,
