@@ -124,6 +124,7 @@ fn outward(turned: &mut [bool], closed: &[Vec<usize>], outlines: &[Vec<usize>], 
         });
         volumes.sum::<f64>()
     };
+    let boxes: Vec<[V3; 2]> = closed.iter().map(|component| box_of(component, outlines, positions)).collect();
     for (number, component) in closed.iter().enumerate() {
         if volume(component, turned) >= 0.0 {
             continue;
@@ -131,12 +132,23 @@ fn outward(turned: &mut [bool], closed: &[Vec<usize>], outlines: &[Vec<usize>], 
         // A part of a component that stays as it is: it would be turned as a whole, and is the wall of a cavity if it lies in another component.
         let is_as_it_was = component.iter().all(|&face| !turned[face]);
         let point = positions[outlines[component[0]][0]];
-        let others = closed.iter().enumerate().filter(|(other, _)| *other != number);
-        let is_cavity = is_as_it_was && others.filter(|(_, other)| contains(other, outlines, positions, point)).count() % 2 == 1;
+        let is_in_box = |[low, high]: [V3; 2]| (0..3).all(|k| (low[k]..=high[k]).contains(&point[k]));
+        let others = (0..closed.len()).filter(|&other| other != number && is_in_box(boxes[other]));
+        let is_cavity = is_as_it_was && others.filter(|&other| contains(&closed[other], outlines, positions, point)).count() % 2 == 1;
         if !is_cavity {
             component.iter().for_each(|&face| turned[face] ^= true);
         }
     }
+}
+
+/// The least and the largest coordinates of a component.
+fn box_of(component: &[usize], outlines: &[Vec<usize>], positions: &[V3]) -> [V3; 2] {
+    let mut bounds = [[f64::INFINITY; 3], [f64::NEG_INFINITY; 3]];
+    for place in component.iter().flat_map(|&face| &outlines[face]).map(|&place| positions[place]) {
+        let [low, high] = bounds;
+        bounds = [[0, 1, 2].map(|k| low[k].min(place[k])), [0, 1, 2].map(|k| high[k].max(place[k]))];
+    }
+    bounds
 }
 
 /// Whether a closed component contains a point: a ray from it meets an odd number of its triangles.
