@@ -1,10 +1,15 @@
 //! Scenes that change between frames: objects with poses, materials, lights, camera, and the tracks of scripted scenes.
 
-use embedded_graphics::{pixelcolor::Rgb888, prelude::*, primitives::Rectangle};
+use embedded_graphics::{
+    pixelcolor::{Rgb565, Rgb888},
+    prelude::*,
+    primitives::Rectangle,
+};
 use microphong::{
     Layout, Object, Pose, Renderer, Scene, SceneError, Shader, Stream,
     fixed::types::{I2F30, I18F14, U0F32, U16F16},
     format::MAX_LIGHTS,
+    pixel::Pixel,
     scene::{Background, MAX_POSITION},
     stream::record::{Camera, EYE_SPACE, Light, Material, ORTHOGRAPHIC, POINT, VIEWER_LOCAL},
 };
@@ -75,8 +80,8 @@ fn drawn_by(shader: Shader<Rgb888>, stream: Stream<'_>, layout: Layout, change: 
     pixels(&mut renderer)
 }
 
-fn pixels(renderer: &mut Renderer<'_, Rgb888>) -> Vec<Rgb888> {
-    let mut band = vec![Rgb888::BLACK; (SIZE.width * SIZE.height) as usize];
+fn pixels<C: Pixel + RgbColor>(renderer: &mut Renderer<'_, C>) -> Vec<C> {
+    let mut band = vec![C::BLACK; (SIZE.width * SIZE.height) as usize];
     let (mut frame, mut pixels) = (renderer.draw(), Vec::new());
     while let Some(area) = frame.next_band(&mut band).expect("a row") {
         pixels.extend_from_slice(&band[..(area.size.width * area.size.height) as usize]);
@@ -343,7 +348,7 @@ fn changes_are_drawn_as_if_the_stream_had_them() {
     let (from, to) = (first.parse().unwrap(), second.parse().unwrap());
     let layout = room(&from);
     let mut memory = vec![0; layout.words::<Rgb888>()];
-    let mut renderer = Renderer::with_shader(from, SIZE, &layout, &mut memory, Shader::PHONG).unwrap();
+    let mut renderer = Renderer::<Rgb888>::with_shader(from, SIZE, &layout, &mut memory, Shader::PHONG).unwrap();
     let before = pixels(&mut renderer);
     let scene = renderer.scene();
     scene.set_lights(to.lights).unwrap();
@@ -364,6 +369,31 @@ fn changes_are_drawn_as_if_the_stream_had_them() {
     let one = pixels(&mut renderer);
     renderer.scene().set_object_material(0, None).unwrap();
     assert!(one != after && pixels(&mut renderer) == after);
+}
+
+/// Lights that become near ones or distant ones, in their old colours, are drawn as if they had always been: distant lights are summed, and near ones
+/// are not.
+#[test]
+fn lights_may_become_of_another_kind() {
+    let of = |second: Lamp| {
+        let mut look = look(vec![Lamp::fixed([-0.4, 0.6, 0.7], [0.6; 3]), second], false, Projection::Perspective);
+        // Of one hue, which has one channel where lights are not summed.
+        look.surfaces = vec![Surface::metal([0.9, 0.5, 0.3], [0.1, 0.5, 0.4], 30); look.surfaces.len()];
+        stream(&look, &meshes())
+    };
+    let [distant, near] = [Lamp::fixed([0.9, 0.1, 0.4], [0.6; 3]), Lamp::fixed_near([1.5, 1.0, 2.0], [0.6; 3])].map(of);
+    for (from, to) in [(&distant, &near), (&near, &distant)] {
+        let (from, to) = (from.parse().unwrap(), to.parse().unwrap());
+        let layout = room(&from);
+        let mut memory = [(); 2].map(|()| vec![0; layout.words::<Rgb565>()]);
+        let [one, other] = &mut memory;
+        let mut changed = Renderer::with_shader(from, SIZE, &layout, one, Shader::<Rgb565>::PHONG).unwrap();
+        let mut new = Renderer::with_shader(to, SIZE, &layout, other, Shader::<Rgb565>::PHONG).unwrap();
+        let before = pixels(&mut changed);
+        changed.scene().set_lights(to.lights).unwrap();
+        let after = pixels(&mut changed);
+        assert!(before != after && after == pixels(&mut new));
+    }
 }
 
 /// A camera that is moved sees what one at that place in the stream sees.

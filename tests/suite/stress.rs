@@ -91,6 +91,25 @@ const BROKEN: [(&str, &str, [u32; 2], u32, bool); 13] = [
     ("cubic-one-hue", "cubic", [110, 150], 0, false),
 ];
 
+/// Random cases that once broke a promise: family, seed and number.
+const CASES: [(&str, u64, u64); 3] = [
+    // A spotlight is 100 times closer to a pixel than to the farthest corner, and the distance is walked with the bits of that.
+    ("arithmetic", 992_300_001, 19_081),
+    // A guard of the table of colours, far beyond white, overflowed.
+    ("changes", 992_400_004, 9_540),
+    // Highlights that cannot be seen were too steep for loops unless they were left out.
+    ("sameness", 992_400_003, 2_496),
+];
+
+#[test]
+fn cases_that_once_broke_hold() {
+    for (name, seed, number) in CASES {
+        let family = families(None).into_iter().find(|family| family.name() == name).unwrap();
+        let verdict = stress::judge(&*family, seed, number);
+        assert!(!verdict.skipped && verdict.failure.is_none(), "{name}, case {number} of seed {seed}: {:?}", verdict.failure);
+    }
+}
+
 #[test]
 fn what_once_broke_holds() {
     let folder = Path::new(env!("CARGO_MANIFEST_DIR")).join("broken");

@@ -106,6 +106,33 @@ mod tests {
     use super::*;
     use crate::{Light, Material};
 
+    /// The walked distance matters where a cone ends and the light is much closer than the farthest corner; lights without a shape have none.
+    #[test]
+    fn cones_of_close_lights_are_sensitive() {
+        let normal = [0.0, 0.0, 1.0];
+        let facet = Facet::new(
+            [[0.0, 60.0], [30.0, 0.0], [60.0, 60.0]],
+            [0, 1, 2],
+            [normal; 3],
+            [[-1.0, 0.0, 0.0], [0.0, 1.0, 0.0], [1.0, 0.0, 0.0]],
+        );
+        let point = [30.0, 40.0];
+        let [x, y, z] = facet.position(facet.weights(point));
+        let weakening = |height: f64, cone| {
+            // At the point, the cosine to the axis is 1/√2: in the middle of the cone's edge.
+            let place = Place::Near([x + height, y, z + height]);
+            let light = Light { cone, ..Light::even(place, [1.0; 3]) };
+            let material = Material { ambient: [0.0; 3], diffuse: [0.5; 3], specular: [0.5; 3], exponent: 8.0 };
+            let viewer = Place::Far(normal);
+            Frame { size: (60, 60), facets: Vec::new(), lights: vec![light], viewer, axes: Facet::CORNERS, materials: vec![material] }
+                .weakening(&facet, point)
+        };
+        let cone = Some(([0.0, 0.0, -1.0], [0.6, 0.8]));
+        let [far, close] = [1.0, 0.01].map(|height| weakening(height, cone));
+        assert!(far < 0.01 && close > 1_000.0 * far, "{far} {close}");
+        assert!(weakening(0.01, None) == 0.0);
+    }
+
     /// The condition number grows where normals are short, and where light and view are nearly opposite. A facet has the largest of its nodes.
     #[test]
     fn it_grows_where_shading_is_ill_conditioned() {

@@ -18,7 +18,7 @@ use crate::{
     },
     pixel::{Channels, gamma::Gamma, half_step, steps},
     scene::{Colour, LightTerms, largest},
-    stream::record::{Light, Material, POINT, SKY},
+    stream::record::{Light, Material, POINT},
 };
 use core::ops::Deref;
 use zerocopy::{FromBytes, Immutable, IntoBytes, KnownLayout};
@@ -95,8 +95,7 @@ impl Factors {
     /// Adds diffuse light only.
     #[inline]
     pub fn add_diffuse(&self, levels: &mut [i32; 3], diffuse: i32) {
-        let cosine = Self::cosine(diffuse);
-        *levels = zip(*levels, self.diffuse, |level, diffuse| level.wrapping_add(diffuse.wrapping_mul(cosine)));
+        *levels = self.add_at(*levels, Self::cosine(diffuse));
     }
 
     /// A cosine, Q5.27, with the fraction bits of a factor. Approximations above 1 count as 1. Armv7-M shifts and clamps in one instruction.
@@ -118,7 +117,7 @@ impl Factors {
         [level(dr, sr), level(dg, sg), level(db, sb)]
     }
 
-    /// Adds the diffuse light at a cosine, Q1.15, to the levels of a vertex.
+    /// Adds the diffuse light at a cosine, Q1.15, to levels.
     #[inline]
     pub(super) fn add_at(&self, [r, g, b]: [i32; 3], cosine: i32) -> [i32; 3] {
         let ([dr, dg, db], level) = (self.diffuse, |level: i32, gain: i32| level.wrapping_add(gain.wrapping_mul(cosine)));
@@ -200,7 +199,6 @@ impl Reflectance {
         let Channels { depth, is_gray, is_coarse, .. } = channels;
         let LightTerms { colours: terms, base, are_one_channel } = LightTerms::new(&channels, ambient, material, lights);
         let is_plain = !LIGHT_SHAPES || !lights.iter().any(Light::has_shape);
-        let is_sky = |light: &Light| LIGHT_SHAPES && light.kind == SKY;
         // Loops for several lights have three channels.
         let are_several = LIGHTS && lights.len() > 1 && lights.iter().all(|light| light.kind != POINT);
         let one_channel = !COLOURS || are_one_channel && (is_gray || !(holds_levels && are_several));
@@ -241,10 +239,10 @@ impl Reflectance {
         // lights, so that it does not matter which of them is first, nor whether one is left out.
         let summed = self.lights == SUMMED;
         let mut more = [0; 3];
-        for (gains, _) in self.gains.iter().zip(lights).filter(|(_, light)| !summed || is_sky(light)) {
+        for (gains, _) in self.gains.iter().zip(lights).filter(|(_, light)| !summed || light.is_sky()) {
             more = zip(more, gains.diffuse, |more, gain| more + i32::from(gain));
         }
-        let less = if summed { excess } else { 0 };
+        let less = self.summed_excess();
         let bits = if summed { FACTOR - less } else { 0 };
         let ambient = zip(self.ambient, more, |level, more| (level << (FACTOR - less)).wrapping_add((more << bits) >> 1));
         let [even, odd] = &mut self.sums;
@@ -310,8 +308,8 @@ impl Reflectance {
         self.lights() == 1 && !self.three_channels()
     }
 
-    /// Number of lights, if the method has loops for this number and their levels fit their formats; [`SUMMED`] for more than two lights, and for light
-    /// from the sky; otherwise 0.
+    /// Number of lights, if it is one or two, the method has loops for them, and their levels fit their formats; [`SUMMED`] for several other lights
+    /// without a position; otherwise 0.
     #[inline]
     #[must_use]
     pub fn lights(&self) -> u8 {
@@ -366,7 +364,7 @@ impl Reflectance {
     /// Dithers three channels by rows: even ones are a quarter of a step lower, odd ones higher.
     pub(crate) fn dither(&mut self) {
         self.quarter = 1 << (CHANNEL - 2);
-        let less = if self.lights == SUMMED { self.excess } else { 0 };
+        let less = self.summed_excess();
         for (rows, quarter) in self.sums.iter_mut().zip([-self.quarter, self.quarter]) {
             for sums in rows {
                 *sums = zip(*sums, steps(self.depth, quarter), |sum, step| sum.raised(step >> less));
@@ -478,6 +476,11 @@ impl Reflectance {
     #[must_use]
     pub fn ambient(&self) -> [i32; 3] {
         self.ambient
+    }
+
+    /// [`Self::excess`] where light is summed. The sums of one light or two fit a word; there it is 0.
+    fn summed_excess(&self) -> u32 {
+        if self.lights == SUMMED { self.excess() } else { 0 }
     }
 
     /// Bits by which the sum of all lights may leave Q10.22, at most 5.

@@ -2,11 +2,10 @@
 
 use crate::{
     arch::product::unsigned_product,
-    features::LIGHT_SHAPES,
     format::MAX_LIGHTS,
     math::vector::zip,
     pixel::Channels,
-    stream::record::{Light, Material, SKY},
+    stream::record::{Light, Material},
 };
 
 /// A colour as products of gains, Q4.28.
@@ -27,10 +26,9 @@ impl LightTerms {
     /// The terms of `material` under `lights`.
     pub(crate) fn new(&Channels { is_gray, is_coarse, .. }: &Channels, ambient: [u16; 3], material: &Material, lights: &[Light]) -> Self {
         let mut colours = heapless::Vec::new();
-        let is_sky = |light: &Light| LIGHT_SHAPES && light.kind == SKY;
         let lit = lights
             .iter()
-            .flat_map(|light| [(light.colour, material.diffuse), (light.colour, if is_sky(light) { [0; 3] } else { material.specular })]);
+            .flat_map(|light| [(light.colour, material.diffuse), (light.colour, if light.is_sky() { [0; 3] } else { material.specular })]);
         for (light, reflectance) in lit.chain([(ambient, material.ambient)]) {
             let colour = product(light, reflectance);
             // There is room for the terms of as many lights as a stream has.

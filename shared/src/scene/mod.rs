@@ -50,7 +50,7 @@ use crate::{
     pixel::Channels,
     stream::{
         Stream, is_gain,
-        record::{Camera, LIGHT_TRACK, Light, Material, OBJECT_TRACK, OWN_MATERIALS, PERSPECTIVE, POINT, SKY, Track, VIEWER_LOCAL},
+        record::{Camera, LIGHT_TRACK, Light, Material, OBJECT_TRACK, OWN_MATERIALS, PERSPECTIVE, POINT, Track, VIEWER_LOCAL},
     },
 };
 use core::ops::Range;
@@ -392,7 +392,7 @@ impl<'a> Scene<'a> {
     }
 
     /// Replaces all lights, of which there may be up to 8. If their number or their colours change, or if a light gets or loses a range or a
-    /// cone, or becomes light from the sky, the next frame takes longer, because it computes the colour tables of all materials again.
+    /// cone, or becomes one of another kind, the next frame takes longer, because it computes the colour tables of all materials again.
     ///
     /// # Errors
     /// Returns [`SceneError::Range`] if there are more than [`MAX_LIGHTS`] or a value is out of range, and [`SceneError::Light`] if the
@@ -410,7 +410,7 @@ impl<'a> Scene<'a> {
         }
         let lights = heapless::Vec::from_slice(lights).map_err(|_| SceneError::Range { name: "number of lights" })?;
         // What the tables of materials depend on.
-        let tabled = |light: &Light| (light.colour, light.kind == SKY, light.has_shape(), light.axis != [0; 3]);
+        let tabled = |light: &Light| (light.colour, light.kind, light.has_shape(), light.axis != [0; 3]);
         if !lights.iter().map(tabled).eq(self.lights.iter().map(tabled)) {
             self.set_stale();
         }

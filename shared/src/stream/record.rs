@@ -6,6 +6,7 @@
 //! numbers. [`crate::Stream::parse`] checks the ranges.
 
 #[doc(no_inline)]
+use crate::features::LIGHT_SHAPES;
 pub use crate::format::{
     ErrorBudget, Focal, Gain, GeometricError, Haversine, InverseAltitude, Length, NormalLength, Radius, Reach, Rotation, Scale, Share, Unit,
 };
@@ -357,6 +358,12 @@ impl Light {
     #[must_use]
     pub fn range(&self) -> Reach {
         Reach::from_bits(self.range)
+    }
+
+    /// Whether the light comes from the sky.
+    #[inline]
+    pub(crate) fn is_sky(&self) -> bool {
+        LIGHT_SHAPES && self.kind == SKY
     }
 
     /// Whether the light has a range or a cone, or comes from the sky.
