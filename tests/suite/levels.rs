@@ -254,7 +254,8 @@ fn levels_are_the_same_however_the_work_is_divided() -> Result {
 /// Levels are chosen for each mesh. Meshes without levels are drawn in full.
 #[test]
 fn each_mesh_has_a_level_of_its_own() {
-    let mesh = |error: u16| Mesh { first_vertex: 0, first_triangle: 0, triangles: 1, vertices: 3, material: 0, error, flags: 0 };
+    let mesh =
+        |error: u16| Mesh { first_vertex: 0, first_triangle: 0, triangles: 1, vertices: 3, material: 0, error, flags: 0, palette: 0 };
     let meshes: Vec<Mesh> = [0, 3, 9, 0, 0, 5].map(mesh).to_vec();
     let (mut parts, _) = quantise(&shapes::dodecahedron());
     parts.iter_mut().for_each(|part| part.closed_convex = false);

@@ -27,6 +27,8 @@ use std::{collections::HashMap, iter};
 pub struct Level {
     /// Their corners count from the part's first vertex.
     pub triangles: Vec<Triangle>,
+    /// For each triangle the colours of its corners as indices of the part's palette; empty if corners have none.
+    pub colours: Vec<[u8; 3]>,
     /// No point of either surface lies farther from the other; more than 0, rounded up.
     pub error: GeometricError,
     /// Closed and convex: front faces never hide one another.
@@ -60,7 +62,7 @@ pub fn add(mesh: &Mesh, parts: &mut [Part], errors: &[GeometricError], tick: &dy
             let Some((triangles, error)) = found else { continue };
             if error > least && triangles.len() as f64 <= GAIN * finer as f64 {
                 let closed_convex = is_convex(mesh, part, &triangles);
-                part.coarser.push(Level { triangles, error, closed_convex });
+                part.coarser.push(Level { triangles, colours: Vec::new(), error, closed_convex });
             }
         }
     }

@@ -18,13 +18,13 @@ use microphong::{
     stream::{
         MAX_GAIN, MAX_NAME,
         record::{
-            CLOSED_CONVEX, Camera, DIRECTIONAL, EYE_SPACE, Header, Instance, Key, Label, Light, MAGIC, Material, Mesh, OBJECT_SPACE,
-            ORTHOGRAPHIC, OWN_MATERIALS, PERSPECTIVE, POINT, SKY, Track, VERSION,
+            CLOSED_CONVEX, Camera, Colour, CornerColours, DIRECTIONAL, EYE_SPACE, HAS_COLOURS, Header, Instance, Key, Label, Light, MAGIC,
+            Material, Mesh, OBJECT_SPACE, ORTHOGRAPHIC, OWN_MATERIALS, PALETTE, PERSPECTIVE, POINT, SKY, Track, VERSION,
         },
     },
 };
 use microphong_render::shader::Shader;
-use std::ops::RangeInclusive;
+use std::{collections::HashMap, iter, ops::RangeInclusive};
 use zerocopy::{FromZeros, IntoBytes};
 
 /// Reflectances of a surface for each channel, where 1 reflects all light.
@@ -259,12 +259,15 @@ impl Look {
             ambient: self.ambient.map(gain).map(Gain::to_bits),
             ..self.seen(parts)
         };
+        let (palettes, colours) = palettes(parts)?;
+        let corner_colours = corner_colours(parts);
+        (header.colours, header.corner_colours) = (colours.len() as u16, corner_colours.len() as u32);
         let names = self.names(parts)?;
         let length = stream::length(&header).and_then(|length| length.checked_add(names.len() as u32));
         header.length = length.context("the stream would be larger than 4 GiB; simplify the mesh")?;
         let mut bytes = header.as_bytes().to_vec();
         let (mut first_vertex, mut first_triangle) = (0, 0);
-        for part in parts {
+        for (part, &palette) in parts.iter().zip(&palettes) {
             let vertices = u16::try_from(part.vertices.len()).context("too many vertices for one mesh; simplify the mesh")?;
             for (triangles, error, closed_convex) in part.levels() {
                 let mesh = Mesh {
@@ -274,7 +277,8 @@ impl Look {
                     vertices,
                     material: part.material,
                     error: error.to_bits(),
-                    flags: if closed_convex { CLOSED_CONVEX } else { 0 },
+                    flags: if closed_convex { CLOSED_CONVEX } else { 0 } | if part.palette.is_empty() { 0 } else { HAS_COLOURS },
+                    palette,
                 };
                 first_triangle += mesh.triangles;
                 bytes.extend_from_slice(mesh.as_bytes());
@@ -295,6 +299,8 @@ impl Look {
         self.cast.ways.iter().for_each(|way| bytes.extend_from_slice(way.keys.as_bytes()));
         parts.iter().for_each(|part| bytes.extend_from_slice(part.vertices.as_bytes()));
         levels().for_each(|(triangles, ..)| bytes.extend_from_slice(triangles.as_bytes()));
+        bytes.extend_from_slice(corner_colours.as_bytes());
+        bytes.extend_from_slice(colours.as_bytes());
         bytes.extend_from_slice(self.labels.as_bytes());
         bytes.extend_from_slice(&names);
         stream::seal(&mut bytes);
@@ -317,6 +323,47 @@ impl Look {
         }
         Ok(bytes)
     }
+}
+
+/// The number of each part's palette, in units of [`PALETTE`] colours, and the colours of all palettes. Equal palettes are written once.
+fn palettes(parts: &[Part]) -> Result<(Vec<u8>, Vec<Colour>)> {
+    let (mut colours, mut known) = (Vec::new(), HashMap::new());
+    let mut number = |part: &Part| -> Result<u8> {
+        if part.palette.is_empty() {
+            return Ok(0);
+        }
+        let next = colours.len().next_multiple_of(PALETTE) / PALETTE;
+        let number = *known.entry(part.palette.clone()).or_insert(next);
+        if number == next {
+            colours.resize(next * PALETTE, BLACK);
+            colours.extend(part.palette.iter().map(|&channels| Colour { channels, unused: 0 }));
+        }
+        u8::try_from(number).context("too many colours for one stream; take fewer by --colours")
+    };
+    let numbers = parts.iter().map(&mut number).collect::<Result<_>>()?;
+    Ok((numbers, colours))
+}
+
+/// What fills a palette up.
+const BLACK: Colour = Colour { channels: [0; 3], unused: 0 };
+
+/// The colours at the corners of all triangles, up to the last one that has some.
+fn corner_colours(parts: &[Part]) -> Vec<CornerColours> {
+    let last = parts.iter().rposition(|part| !part.palette.is_empty());
+    let mut corners = Vec::new();
+    for part in parts.iter().take(last.map_or(0, |last| last + 1)) {
+        let colour = |index: u8| Colour { channels: part.palette[usize::from(index)], unused: 0 };
+        let levels =
+            iter::once((&part.colours, &part.triangles)).chain(part.coarser.iter().map(|level| (&level.colours, &level.triangles)));
+        for (colours, triangles) in levels {
+            if part.palette.is_empty() {
+                corners.extend(triangles.iter().map(|_| CornerColours { colours: [0; 3], range: 0 }));
+            } else {
+                corners.extend(colours.iter().map(|&colours| CornerColours::new(colours, colours.map(colour))));
+            }
+        }
+    }
+    corners
 }
 
 /// Radius of the ball about the origin that holds all vertices, rounded up.

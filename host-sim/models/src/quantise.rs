@@ -38,6 +38,10 @@ pub struct Part {
     pub vertices: Vec<Vertex>,
     /// Their corners count from this part's first vertex.
     pub triangles: Vec<Triangle>,
+    /// The colours of all corners, at most 256; empty if corners have none.
+    pub palette: Vec<[u8; 3]>,
+    /// For each triangle the colours of its corners as indices of the palette; empty if corners have none.
+    pub colours: Vec<[u8; 3]>,
     /// Closed and convex: front faces never hide one another.
     pub closed_convex: bool,
     /// The vertex of the mesh that each of its vertices is a copy of.

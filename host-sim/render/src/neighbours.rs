@@ -59,6 +59,8 @@ pub fn with_neighbours(stream: &Stream<'_>) -> Result<Vec<u32>> {
         stream.vertices.as_bytes(),
         stream.triangles.as_bytes(),
         neighbours.as_bytes(),
+        stream.corner_colours.as_bytes(),
+        stream.colours.as_bytes(),
         stream.labels.as_bytes(),
         stream.names,
     ]

@@ -19,9 +19,9 @@ pub use included::check_included;
 pub use names::MAX_NAME;
 pub use names::{Names, UnknownMesh};
 use record::{
-    CAMERA_TRACK, Cut, EYE_SPACE, HAS_NEIGHBOURS, Instance, Key, LIGHT_TRACK, Label, Light, MAGIC, MAX_POSITION, Material, NO_OUTLINES,
-    Neighbours, OBJECT_TRACK, OPEN, ORTHOGRAPHIC, OUTLINES_ALONE, OWN_MATERIALS, PERSPECTIVE, POINT, RIGHT, SKY, Track, Triangle, VERSION,
-    VIEWER_INFINITE, VIEWER_LOCAL, Vertex,
+    CAMERA_TRACK, Colour, CornerColours, Cut, EYE_SPACE, HAS_COLOURS, HAS_NEIGHBOURS, Instance, Key, LIGHT_TRACK, Label, Light, MAGIC,
+    MAX_POSITION, Material, NO_OUTLINES, Neighbours, OBJECT_TRACK, OPEN, ORTHOGRAPHIC, OUTLINES_ALONE, OWN_MATERIALS, PALETTE, PERSPECTIVE,
+    POINT, RIGHT, SKY, Track, Triangle, VERSION, VIEWER_INFINITE, VIEWER_LOCAL, Vertex,
 };
 #[doc(inline)]
 pub use record::{Camera, Header, Mesh};
@@ -70,12 +70,28 @@ pub struct Stream<'a> {
     /// Neighbours of all triangles, for antialiasing and lines; empty if `microphong convert` wrote the file without `--antialias`.
     #[doc(hidden)]
     pub neighbours: &'a [Neighbours],
+    /// Colours at the corners of the first triangles; empty if no mesh has any.
+    #[doc(hidden)]
+    pub corner_colours: &'a [CornerColours],
+    /// The palettes of all meshes.
+    #[doc(hidden)]
+    pub colours: &'a [Colour],
     /// Texts that are drawn over the picture.
     #[doc(hidden)]
     pub labels: &'a [Label],
     /// Names of the meshes as bytes of the file; empty if there are none. [`Stream::names`] reads them.
     #[doc(hidden)]
     pub names: &'a [u8],
+}
+
+/// The colours at the corners of the triangles of a mesh.
+#[doc(hidden)]
+#[derive(Clone, Copy, Debug)]
+pub struct MeshColours<'a> {
+    /// The colours of the mesh, and of others behind them.
+    pub palette: &'a [Colour],
+    /// For each triangle.
+    pub corners: &'a [CornerColours],
 }
 
 /// The reason why bytes are not a valid stream (a mesh file that `microphong convert` has written).
@@ -196,6 +212,8 @@ pub fn length(header: &Header) -> Option<u32> {
         (header.triangles, size_of::<Triangle>()),
         (header.labels.into(), size_of::<Label>()),
         (header.cuts, size_of::<Cut>()),
+        (header.corner_colours, size_of::<CornerColours>()),
+        (header.colours.into(), size_of::<Colour>()),
     ];
     sizes.iter().try_fold(0u32, |sum, &(count, size)| sum.checked_add(count.checked_mul(size as u32)?))
 }
@@ -259,6 +277,8 @@ impl<'a> Stream<'a> {
             vertices: take(&mut rest, header.vertices as usize)?,
             triangles: take(&mut rest, header.triangles as usize)?,
             neighbours: take(&mut rest, neighbours as usize)?,
+            corner_colours: take(&mut rest, header.corner_colours as usize)?,
+            colours: take(&mut rest, header.colours.into())?,
             labels: take(&mut rest, header.labels.into())?,
             names: rest,
         })
@@ -273,6 +293,7 @@ impl<'a> Stream<'a> {
         field(header.outlines <= OUTLINES_ALONE, "outlines", 0)?;
         let has_outlines = header.outlines != NO_OUTLINES;
         field(has_outlines || header.outline_colour == [0; 3], "outline colour", 0)?;
+        field(header.corner_colours <= header.triangles && header.unused == 0, "corner colours", 0)?;
         field(!has_outlines || header.triangles == 0 || !self.neighbours.is_empty(), "neighbours for outlines", 0)?;
         let fault = |fault: Option<&'static str>, i: usize| fault.map_or(Ok(()), |name| field(false, name, i));
         fault(header.camera.fault(), 0)?;
@@ -290,7 +311,10 @@ impl<'a> Stream<'a> {
             let is_level = mesh.error > 0;
             let expected = if is_level { finer.first_vertex } else { next_vertex };
             field(mesh.first_vertex == expected, "mesh first vertex", i)?;
-            let is_coarser = mesh.error > finer.error && mesh.vertices == finer.vertices && mesh.material == finer.material;
+            let is_coarser = mesh.error > finer.error
+                && mesh.vertices == finer.vertices
+                && mesh.material == finer.material
+                && mesh.palette == finer.palette;
             field(!is_level || is_coarser, "mesh level", i)?;
             finer = mesh;
             next_vertex = expected.saturating_add(mesh.vertices.into());
@@ -305,6 +329,7 @@ impl<'a> Stream<'a> {
             }
             let has_neighbours = mesh.flags & HAS_NEIGHBOURS != 0;
             field(has_neighbours != self.neighbours.is_empty() || header.triangles == 0, "mesh neighbours", i)?;
+            self.check_colours(mesh, i)?;
             for (k, Neighbours(edges)) in self.neighbours_of(mesh).iter().enumerate() {
                 let exists = |&other: &u16| other & OPEN == OPEN || u32::from(other & OPEN) < mesh.triangles;
                 field(edges.iter().all(exists), "triangle neighbour", mesh.first_triangle as usize + k)?;
@@ -327,6 +352,19 @@ impl<'a> Stream<'a> {
         for (i, Cut { triangles, objects }) in self.cuts.iter().enumerate() {
             let exist = objects.iter().all(|&object| object < header.instances.max(1));
             field(exist && triangles.iter().all(|&triangle| triangle < header.triangles), "cut", i)?;
+        }
+        Ok(())
+    }
+
+    /// The colours at the corners of the triangles of `mesh`, which is number `i`.
+    fn check_colours(&self, mesh: &Mesh, i: usize) -> Result<(), StreamError> {
+        let Some(MeshColours { palette, corners }) = self.colours_of(mesh) else {
+            return field(mesh.flags & HAS_COLOURS == 0 && mesh.palette == 0, "mesh colours", i);
+        };
+        for (k, &corner) in corners.iter().enumerate() {
+            let [a, b, c] = corner.colours.map(|colour| palette.get(usize::from(colour)));
+            let is_right = matches!((a, b, c), (Some(&a), Some(&b), Some(&c)) if CornerColours::new(corner.colours, [a, b, c]) == corner);
+            field(is_right, "colour of a corner", mesh.first_triangle as usize + k)?;
         }
         Ok(())
     }
@@ -418,6 +456,15 @@ impl<'a> Stream<'a> {
     #[must_use]
     pub fn triangles_of(&self, mesh: &Mesh) -> Option<&'a [Triangle]> {
         self.triangles.get(mesh.first_triangle as usize..)?.get(..mesh.triangles as usize)
+    }
+
+    /// The colours at the corners of the triangles of `mesh`; `None` if it has none.
+    #[doc(hidden)]
+    #[must_use]
+    pub fn colours_of(&self, mesh: &Mesh) -> Option<MeshColours<'a>> {
+        let corners = self.corner_colours.get(mesh.first_triangle as usize..)?.get(..mesh.triangles as usize)?;
+        let palette = self.colours.get(usize::from(mesh.palette) * PALETTE..)?;
+        (mesh.flags & HAS_COLOURS != 0).then_some(MeshColours { palette, corners })
     }
 
     /// Returns the neighbours of the triangles of `mesh`: one for each triangle, or none if the stream does not have them.

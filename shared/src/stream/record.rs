@@ -18,7 +18,7 @@ compile_error!("streams are read in place and are little-endian");
 /// First four bytes of every stream.
 pub const MAGIC: [u8; 4] = *b"mTRI";
 /// Version of the format.
-pub const VERSION: u16 = 9;
+pub const VERSION: u16 = 10;
 
 /// The first record of a stream (mesh file): the camera, the background, and the number of records of each kind. Most programs only read
 /// [`Self::frames`].
@@ -91,6 +91,16 @@ pub struct Header {
     /// The lines along outlines: 0 for none, 1 for lines over the surfaces, 2 for lines alone on the background.
     #[doc(hidden)]
     pub outlines: u8,
+    /// The number of [`CornerColours`] records: one for each of the first triangles of the stream, up to the last one of a mesh that has colours at
+    /// its corners.
+    #[doc(hidden)]
+    pub corner_colours: u32,
+    /// The number of [`Colour`] records.
+    #[doc(hidden)]
+    pub colours: u16,
+    /// Zero.
+    #[doc(hidden)]
+    pub unused: u16,
     /// The camera at the beginning of the animation.
     pub camera: Camera,
 }
@@ -232,9 +242,13 @@ pub struct Mesh {
     #[doc(hidden)]
     pub error: u16,
     /// Properties as bits. Bit 0 is 1 if the mesh is closed and convex, so that none of its front faces can hide another; the renderer then
-    /// leaves out depth tests. Bit 1 is 1 if the stream has the neighbours of the mesh's triangles. The other bits are unused.
+    /// leaves out depth tests. Bit 1 is 1 if the stream has the neighbours of the mesh's triangles. Bit 2 is 1 if the corners of its triangles have
+    /// colours. The other bits are unused.
     #[doc(hidden)]
-    pub flags: u16,
+    pub flags: u8,
+    /// The first [`Colour`] of the mesh's palette, in units of [`PALETTE`] colours.
+    #[doc(hidden)]
+    pub palette: u8,
 }
 
 impl Mesh {
@@ -252,10 +266,16 @@ impl Mesh {
 /// - Each vertex is a corner of a convex body, in the ball of radius one about the origin, with coordinates rounded to the
 ///   nearest; 0.36 units of the last place are left for the body's own arithmetic.
 /// - By that rounding no triangle has leaned by more than 2^-[`LEAN`] rad.
-pub const CLOSED_CONVEX: u16 = 1;
+pub const CLOSED_CONVEX: u8 = 1;
 
 /// The stream has [`Neighbours`] for the triangles of the mesh. All meshes of a stream have this property, or none.
-pub const HAS_NEIGHBOURS: u16 = 2;
+pub const HAS_NEIGHBOURS: u8 = 2;
+
+/// The stream has [`CornerColours`] for the triangles of the mesh.
+pub const HAS_COLOURS: u8 = 4;
+
+/// Palettes begin at a multiple of this number of colours.
+pub const PALETTE: usize = 16;
 
 /// The largest angle by which rounding may have tilted a triangle of a [`CLOSED_CONVEX`] mesh is 2^-`LEAN` rad: 0.9 degrees.
 pub const LEAN: u32 = 6;
@@ -483,6 +503,39 @@ pub struct Triangle {
     /// least one step, at most 65535. It tells how far the triangle has to face away before rounding of corners cannot turn it to the front, see
     /// [`crate::geometry::cull`].
     pub inverse_altitude: u16,
+}
+
+/// A colour of a palette: the part of the ambient and of the diffuse light that a surface reflects, besides what its material does. Highlights do not
+/// depend on it.
+#[derive(FromBytes, IntoBytes, Immutable, KnownLayout, Clone, Copy, Debug, PartialEq, Eq)]
+#[repr(C)]
+pub struct Colour {
+    /// Red, green, blue, each 0 to 255, where 255 is all of the light.
+    pub channels: [u8; 3],
+    /// Zero.
+    pub unused: u8,
+}
+
+/// The colours at the corners of a triangle. Between them the colour is linear.
+#[derive(FromBytes, IntoBytes, Immutable, KnownLayout, Clone, Copy, Debug, PartialEq, Eq)]
+#[repr(C)]
+pub struct CornerColours {
+    /// The colour of each corner, as an index of the mesh's palette.
+    pub colours: [u8; 3],
+    /// The largest difference of a channel between two corners: 0 if the triangle has one colour.
+    pub range: u8,
+}
+
+impl CornerColours {
+    /// The colours of three corners, which are these in the palette.
+    #[must_use]
+    pub fn new(colours: [u8; 3], [a, b, c]: [Colour; 3]) -> Self {
+        let range = (0..3).fold(0, |most, k| match (a.channels.get(k), b.channels.get(k), c.channels.get(k)) {
+            (Some(&a), Some(&b), Some(&c)) => most.max(a.max(b).max(c) - a.min(b).min(c)),
+            _ => most,
+        });
+        Self { colours, range }
+    }
 }
 
 /// The neighbours of a triangle, from which outlines are found. Entry `k` belongs to the edge that joins the corners `k` and `k + 1`.
