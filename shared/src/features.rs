@@ -22,12 +22,23 @@ pub enum Feature {
     Objects,
     /// Labels, which are texts over the picture.
     Text,
+    /// Meshes with colours at the corners of their triangles.
+    VertexColours,
 }
 
 impl Feature {
     /// All features that a mesh file can need.
-    pub const ALL: [Self; 8] =
-        [Self::Animation, Self::Antialias, Self::Colours, Self::Lights, Self::LightShapes, Self::NearLights, Self::Objects, Self::Text];
+    pub const ALL: [Self; 9] = [
+        Self::Animation,
+        Self::Antialias,
+        Self::Colours,
+        Self::Lights,
+        Self::LightShapes,
+        Self::NearLights,
+        Self::Objects,
+        Self::Text,
+        Self::VertexColours,
+    ];
 
     /// The name of the feature in `Cargo.toml`.
     #[must_use]
@@ -41,6 +52,7 @@ impl Feature {
             Self::NearLights => "near-lights",
             Self::Objects => "objects",
             Self::Text => "text",
+            Self::VertexColours => "vertex-colours",
         }
     }
 
@@ -57,6 +69,7 @@ impl Feature {
             Self::NearLights => cfg!(feature = "near-lights"),
             Self::Objects => cfg!(feature = "objects"),
             Self::Text => cfg!(feature = "text"),
+            Self::VertexColours => cfg!(feature = "vertex-colours"),
         }
     }
 }
@@ -69,6 +82,10 @@ pub(crate) const LIGHTS: bool = Feature::Lights.is_on();
 pub(crate) const LIGHT_SHAPES: bool = Feature::LightShapes.is_on();
 pub(crate) const NEAR_LIGHTS: bool = Feature::NearLights.is_on();
 pub(crate) const OBJECTS: bool = Feature::Objects.is_on();
+/// Whether the corners of triangles may have colours.
+pub(crate) const VERTEX_COLOURS: bool = Feature::VertexColours.is_on();
+/// 1 in a program whose triangles may have colours at their corners, otherwise 0: the room for what only these need.
+pub(crate) const COLOURED: usize = VERTEX_COLOURS as usize;
 
 /// Whether a frame can draw only what has changed.
 pub(crate) const REDRAW: bool = cfg!(feature = "redraw");
@@ -77,5 +94,5 @@ pub(crate) const PERSPECTIVE: bool = cfg!(feature = "perspective");
 /// Whether a program can switch off the skipping of invisible work, and count it.
 pub(crate) const SKIPS: bool = cfg!(feature = "skips");
 
-/// Whether the only light is directional and the viewer is infinitely far, so that N·L and N·H are linear in N.
-pub(crate) const ALWAYS_CONSTANT: bool = !LIGHTS && !NEAR_LIGHTS;
+/// Whether the only light is directional, the viewer is infinitely far, and no mesh has colours at its corners: vertices hold N·L and N·H in all scenes.
+pub(crate) const ALWAYS_CONSTANT: bool = !LIGHTS && !NEAR_LIGHTS && !VERTEX_COLOURS;

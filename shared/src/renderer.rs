@@ -176,7 +176,14 @@ impl<'a, C: Pixel> Renderer<'a, C> {
         let reflectances = reflectances.get_mut(..scene.materials().len()).unwrap_or_default();
         for (index, material) in scene.stale_materials() {
             if let (Some(reflectance), Some(ramps)) = (reflectances.get_mut(index), ramps.get_mut(index)) {
-                reflectance.fill(Channels::of::<C>(), ambient, &material, &lights, (facts.highlight, facts.highlight_levels));
+                reflectance.fill(
+                    Channels::of::<C>(),
+                    ambient,
+                    &material,
+                    &lights,
+                    (facts.highlight, facts.highlight_levels),
+                    scene.is_coloured(index),
+                );
                 fill_ramps::<C>(ramps, reflectance, *dither, *gamma);
             }
         }

@@ -48,4 +48,5 @@ mod split;
 mod still;
 mod stress;
 mod verify;
+mod vertex_colours;
 mod watertight;

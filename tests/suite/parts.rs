@@ -4,7 +4,7 @@ use microphong::{
     StreamError,
     stream::{
         self, Header, Mesh,
-        record::{Instance, Key, Label, Light, Material, Track, Triangle, Vertex},
+        record::{Colour, CornerColours, Instance, Key, Label, Light, Material, Track, Triangle, Vertex},
     },
 };
 use microphong_sim::bytes::StreamBytes;
@@ -21,6 +21,8 @@ pub(crate) struct Parts {
     pub(crate) keys: Vec<Key>,
     pub(crate) vertices: Vec<Vertex>,
     pub(crate) triangles: Vec<Triangle>,
+    pub(crate) corner_colours: Vec<CornerColours>,
+    pub(crate) colours: Vec<Colour>,
     pub(crate) labels: Vec<Label>,
     pub(crate) names: Vec<u8>,
 }
@@ -38,6 +40,8 @@ impl Parts {
             keys: stream.keys.to_vec(),
             vertices: stream.vertices.to_vec(),
             triangles: stream.triangles.to_vec(),
+            corner_colours: stream.corner_colours.to_vec(),
+            colours: stream.colours.to_vec(),
             labels: stream.labels.to_vec(),
             names: stream.names.to_vec(),
         })
@@ -50,6 +54,7 @@ impl Parts {
             (self.meshes.len() as u16, self.materials.len() as u16, self.lights.len() as u16);
         (header.instances, header.tracks, header.keys) = (self.instances.len() as u16, self.tracks.len() as u16, self.keys.len() as u32);
         (header.vertices, header.triangles) = (self.vertices.len() as u32, self.triangles.len() as u32);
+        (header.corner_colours, header.colours) = (self.corner_colours.len() as u32, self.colours.len() as u16);
         header.labels = self.labels.len() as u8;
         header.length = stream::length(header).map_or(u32::MAX, |length| length.saturating_add(self.names.len() as u32));
         lie(header);
@@ -63,6 +68,8 @@ impl Parts {
             self.keys.as_bytes(),
             self.vertices.as_bytes(),
             self.triangles.as_bytes(),
+            self.corner_colours.as_bytes(),
+            self.colours.as_bytes(),
             self.labels.as_bytes(),
             &self.names,
         ] {

@@ -7,7 +7,7 @@ use microphong::{
     format::{BIAS, CHANNEL, Intensity, RAMP, WALK},
     method::{Highlight, Reflectance},
     pixel::{Channels, Pixel, PixelFormat, ramps::Rounded},
-    stream::record::Material,
+    stream::record::{HAS_COLOURS, Material, Mesh},
 };
 use microphong_render::{
     choices::{self, Told},
@@ -84,7 +84,10 @@ impl Pixel for Fine {
 #[must_use]
 pub fn is_one_channel(stream: &Stream<'_>, material: &Material) -> bool {
     let mut reflectance = Box::new(Reflectance::EMPTY);
-    reflectance.fill(Channels::of::<Fine>(), stream.header.ambient, material, stream.lights, (Highlight::Half, false));
+    let has_colours = |mesh: &&Mesh| mesh.flags & HAS_COLOURS != 0;
+    let is_coloured =
+        stream.meshes.iter().filter(has_colours).any(|mesh| stream.materials.get(usize::from(mesh.material)) == Some(material));
+    reflectance.fill(Channels::of::<Fine>(), stream.header.ambient, material, stream.lights, (Highlight::Half, false), is_coloured);
     !reflectance.three_channels()
 }
 

@@ -13,18 +13,19 @@ const FINER: u32 = 30 - UNIT;
 /// normalised.
 pub fn six_linear_nodes(setup: &TriangleSetup<'_>) -> [Node; 6] {
     let [a, b, c] = setup.vertices();
-    let middle = |a: &Vertex, b: &Vertex| Node {
+    let middle = |a: &Vertex, b: &Vertex, weights| Node {
         position: add(wide(a.position), wide(b.position)).map(|c| c << (POSITION - UNIT - 1)),
         normal: add(wide(a.normal), wide(b.normal)).map(|c| c << (FINER - 1)),
+        albedo: setup.colour_at(weights),
     };
     let [p, q, r] = setup.corner_nodes();
-    [p, q, r, middle(a, b), middle(b, c), middle(c, a)]
+    [p, q, r, middle(a, b, [1, 1, 0]), middle(b, c, [0, 1, 1]), middle(c, a, [1, 0, 1])]
 }
 
 /// The point with the barycentric coordinates `weights / 2^bits`, and its unit normal. The weights belong to the corners 0, 1, 2, are not negative,
 /// and add up to `2^bits`; `bits` is at most 11.
 pub fn node(setup: &TriangleSetup<'_>, weights: [i32; 3], bits: u32) -> Node {
-    between(setup.vertices(), weights, bits)
+    Node { albedo: setup.colour_at(weights), ..between(setup.vertices(), weights, bits) }
 }
 
 /// [`node`] between three vertices.
@@ -36,7 +37,7 @@ fn between([a, b, c]: [&Vertex; 3], [u, v, w]: [i32; 3], bits: u32) -> Node {
     };
     let [x, y, z] = mean(|vertex| vertex.position);
     let up = POSITION - UNIT - bits;
-    Node { position: [x << up, y << up, z << up], normal: normalise(mean(|vertex| vertex.normal)) }
+    Node { position: [x << up, y << up, z << up], normal: normalise(mean(|vertex| vertex.normal)), albedo: Node::NO_COLOUR }
 }
 
 /// The point with the barycentric coordinates `weights / (3 · 2^bits)`, and its unit normal. The weights belong to the corners 0, 1, 2, are not

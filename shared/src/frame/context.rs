@@ -2,7 +2,7 @@
 
 use crate::{
     edges::{Edge, find::Outlined},
-    features::{ANTIALIAS, OBJECTS, REDRAW},
+    features::{ANTIALIAS, OBJECTS, REDRAW, VERTEX_COLOURS},
     frame::skips::Skips,
     geometry::{
         depth_elision::DepthElision,
@@ -13,11 +13,11 @@ use crate::{
     },
     lighting::reflectance::{LitMaterial, Reflectance},
     math::highlight_lut::HighlightLut,
-    mesh::{MeshPass, vertices::VertexStage},
+    mesh::{MeshPass, Painting, vertices::VertexStage},
     method::{ErrorBounds, Method, Shading, VertexLight},
     placement::{Placement, Placements},
     scene::{Object, Outlines, Scene},
-    stream::record::{CLOSED_CONVEX, Cut, Mesh},
+    stream::record::{CLOSED_CONVEX, Cut, HAS_COLOURS, Mesh},
 };
 use embedded_graphics_core::geometry::Size;
 
@@ -196,7 +196,12 @@ impl<'r> Context<'r> {
         let light = self.settings.method.facts().vertex_light;
         let reflectance = self.material(placed.material)?;
         let Placement { view, lighting, .. } = placed.placement;
-        Some(VertexStage { view, lighting, constant: lighting.constant(), reflectance, light })
+        let is_coloured = VERTEX_COLOURS && placed.mesh.flags & HAS_COLOURS != 0;
+        let mut stage = VertexStage { view, lighting, constant: lighting.constant(), reflectance, light, is_coloured };
+        if stage.holds_parts() {
+            stage.constant = None;
+        }
+        Some(stage)
     }
 
     /// A mesh whose outlines are found.
@@ -312,6 +317,7 @@ impl<'r> Context<'r> {
             first_triangle: placed.first_triangle,
             triangles: stream.triangles_of(placed.mesh)?,
             vertices: stream.vertices_of(placed.mesh)?,
+            painting: Painting::of(stream, placed.mesh, self.scene.is_gray()),
             cached: self.vertices.get(placed.first_vertex..).unwrap_or_default(),
             viewport: self.settings.viewport(),
             columns: columns.map(i32::from),

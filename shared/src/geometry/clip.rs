@@ -5,6 +5,7 @@
 
 use crate::{
     arch::quotient::long,
+    features::COLOURED,
     format::{HAVERSINE, INVERSE_SUM_LENGTH, UNIT},
     geometry::{lens::PLANES, projection::View},
     math::{
@@ -13,6 +14,7 @@ use crate::{
     },
     stream::record::{Triangle, Vertex},
 };
+use core::array::from_fn;
 use heapless::Vec;
 
 /// Largest number of corners of a triangle that five planes have cut.
@@ -24,6 +26,7 @@ struct Corner {
     eye: [i32; 3],
     position: [i32; 3],
     normal: [i32; 3],
+    colour: [[i32; 3]; COLOURED],
 }
 
 /// A corner after the cut: the object-space vertex and its place on the screen.
@@ -33,14 +36,23 @@ pub(crate) struct Cut {
     pub vertex: Vertex,
     /// `[x, y, inv_depth]`, see [`crate::geometry::lens::Lens::project`].
     pub place: [i32; 3],
+    /// The colour of the surface, interpolated linearly.
+    pub colour: [[i32; 3]; COLOURED],
 }
 
 /// The part of a triangle that can be projected: a fan around its first corner; empty if there is none.
 #[must_use]
 pub(crate) fn clip(view: &View, vertices: [&Vertex; 3]) -> Vec<Cut, CORNERS> {
+    clip_coloured(view, vertices, [[[0; 3]; 3]; COLOURED])
+}
+
+/// [`clip`], where the corners have these colours.
+#[must_use]
+pub(crate) fn clip_coloured(view: &View, vertices: [&Vertex; 3], colours: [[[i32; 3]; 3]; COLOURED]) -> Vec<Cut, CORNERS> {
     let mut polygon = Vec::<Corner, CORNERS>::new();
-    for v in vertices {
-        let _ = polygon.push(Corner { eye: view.to_eye(v.position), position: wide(v.position), normal: wide(v.normal) });
+    for (k, v) in vertices.into_iter().enumerate() {
+        let colour = colours.map(|colours| colours.get(k).copied().unwrap_or_default());
+        let _ = polygon.push(Corner { eye: view.to_eye(v.position), position: wide(v.position), normal: wide(v.normal), colour });
     }
     for plane in 0..PLANES {
         let mut cut = Vec::new();
@@ -61,7 +73,7 @@ pub(crate) fn clip(view: &View, vertices: [&Vertex; 3]) -> Vec<Cut, CORNERS> {
     for corner in &polygon {
         let normal = normalise(corner.normal).map(|c| ((c + (1 << 15)) >> 16) as i16);
         let (place, _) = view.lens.project(corner.eye);
-        let _ = cuts.push(Cut { vertex: Vertex { position: corner.position.map(|c| c as i16), normal }, place });
+        let _ = cuts.push(Cut { vertex: Vertex { position: corner.position.map(|c| c as i16), normal }, place, colour: corner.colour });
     }
     cuts
 }
@@ -69,7 +81,12 @@ pub(crate) fn clip(view: &View, vertices: [&Vertex; 3]) -> Vec<Cut, CORNERS> {
 /// The part of an edge that can be projected, as `[x, y, inv_depth]` of its ends; `None` if there is none.
 #[must_use]
 pub(crate) fn clip_edge(view: &View, ends: [&Vertex; 2]) -> Option<[[i32; 3]; 2]> {
-    let corner = |v: &Vertex| Corner { eye: view.to_eye(v.position), position: wide(v.position), normal: wide(v.normal) };
+    let corner = |v: &Vertex| Corner {
+        eye: view.to_eye(v.position),
+        position: wide(v.position),
+        normal: wide(v.normal),
+        colour: [[0; 3]; COLOURED],
+    };
     let [mut a, mut b] = ends.map(corner);
     for plane in 0..PLANES {
         let (da, db) = (view.lens.distance(a.eye, plane), view.lens.distance(b.eye, plane));
@@ -94,6 +111,7 @@ fn between(inner: &Corner, outer: &Corner, di: i64, d_o: i64) -> Corner {
         eye: mix(inner.eye, outer.eye, t),
         position: mix(inner.position, outer.position, t),
         normal: mix(inner.normal, outer.normal, t),
+        colour: from_fn(|k| mix(inner.colour[k], outer.colour[k], t)),
     }
 }
 

@@ -24,6 +24,20 @@ pub struct DiffuseOnly(pub i32);
 #[derive(Clone, Copy, Debug)]
 pub struct Summed(pub [i32; 3]);
 
+/// Light on a surface whose colour changes from pixel to pixel, and that colour: shares of red, green and blue, Q1.[`COLOUR`].
+#[derive(Clone, Copy, Debug)]
+pub struct Coloured<L>(pub L, pub [u32; 3]);
+
+/// Fraction bits of a walked colour.
+pub const COLOUR: u32 = 29;
+
+/// Multiplies a level by a walked share. Both levels have one format, in which they are not negative.
+#[inline(always)]
+fn painted(level: i32, share: u32) -> i32 {
+    // 16 bits of each make a word.
+    (level >> 15).wrapping_mul((share >> (COLOUR - 15)) as i32)
+}
+
 /// Fraction bits of [`Summed`].
 pub const SUMMED: u32 = CHANNEL - 3;
 
@@ -154,6 +168,11 @@ impl Sum {
         self.diffuse.wrapping_mul(cosine).wrapping_add(self.specular.wrapping_mul(highlight))
     }
 
+    /// The level of ambient light plus a constant for rounding, Q10.22.
+    pub(super) fn ambient(self) -> i32 {
+        self.ambient
+    }
+
     /// Adds `by` to all levels, Q10.22. A sum that overflows is not used.
     pub(super) fn raised(self, by: i32) -> Self {
         Self { ambient: self.ambient.wrapping_add(by), ..self }
@@ -224,6 +243,46 @@ impl<C: Pixel> Shades<WithHighlight> for OneLightRgb<'_, C> {
     }
 }
 
+/// Three channels under one light on a surface whose colour changes from pixel to pixel.
+#[derive(Clone, Copy, Debug)]
+pub struct ColouredRgb<'a, C> {
+    pub(super) sums: OneLightRgb<'a, C>,
+    /// See [`Reflectance::pure_ambient`](super::reflectance::Reflectance::pure_ambient).
+    pub(super) ambient: [i32; 3],
+}
+
+impl<C: Pixel> ByRows for ColouredRgb<'_, C> {
+    #[inline(always)]
+    fn step_row(&mut self) {
+        self.sums.step_row();
+    }
+}
+
+impl<C: Pixel> LitColours for ColouredRgb<'_, C> {
+    type Pixel = C;
+
+    const TABLED: bool = false;
+
+    fn diffuse(&self) -> u16 {
+        self.sums.diffuse()
+    }
+}
+
+impl<C: Pixel, L: Into<WithHighlight>> Shades<Coloured<L>> for ColouredRgb<'_, C> {
+    #[inline(always)]
+    fn colour(&self, bits: u32, Coloured(light, [red, green, blue]): Coloured<L>) -> C {
+        let WithHighlight(diffuse, highlight) = light.into();
+        let (sums, [r, g, b], cosine, highlight) = (self.sums.0.now(), self.ambient, cosine(bits, diffuse), highlight as i32);
+        let level = |sum: &Sum, ambient: i32, share: u32| {
+            let reflected = painted(ambient.wrapping_add(sum.diffuse.wrapping_mul(cosine)), share);
+            // What the sum has more than ambient light is for rounding.
+            reflected.wrapping_add(sum.ambient.wrapping_sub(ambient)).wrapping_add(sum.specular.wrapping_mul(highlight))
+        };
+        let [sum_r, sum_g, sum_b] = sums;
+        C::mixed([level(sum_r, r, red), level(sum_g, g, green), level(sum_b, b, blue)])
+    }
+}
+
 /// Three channels under any number of lights: ambient light, to which the light at a pixel is added.
 #[derive(Clone, Copy, Debug)]
 pub struct SummedRgb<'a, C> {
@@ -257,6 +316,17 @@ impl<C: Pixel> SummedRgb<'_, C> {
         let [r, g, b] = self.ambient.now();
         let level = |ambient: &Sum, sum: i32| ambient.ambient.wrapping_add(sum << (CHANNEL - SUMMED));
         [level(r, red), level(g, green), level(b, blue)]
+    }
+
+    /// Levels of ambient and diffuse light on a surface of a walked colour, where `pure` is what they have of ambient light alone.
+    #[inline(always)]
+    pub(crate) fn painted(&self, levels: [i32; 3], [pure_r, pure_g, pure_b]: [i32; 3], [red, green, blue]: [u32; 3]) -> [i32; 3] {
+        let ([r, g, b], [level_r, level_g, level_b]) = (self.ambient.now(), levels);
+        let level = |sum: &Sum, level: i32, pure: i32, share: u32| {
+            let rounding = sum.ambient.wrapping_sub(pure);
+            painted(level.wrapping_sub(rounding), share).wrapping_add(rounding)
+        };
+        [level(r, level_r, pure_r, red), level(g, level_g, pure_g, green), level(b, level_b, pure_b, blue)]
     }
 
     /// The colour of levels.

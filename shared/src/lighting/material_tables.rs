@@ -4,7 +4,7 @@ use crate::{
     features::{COLOURS, LIGHTS},
     format::{BIAS, CHANNEL, COSINE, INTENSITY, LEVEL, WALK},
     lighting::{
-        constant_lights::{FACTOR, OneLightRamp, OneLightRgb, SummedRgb, TwoLightsRgb},
+        constant_lights::{ColouredRgb, FACTOR, OneLightRamp, OneLightRgb, SummedRgb, TwoLightsRgb},
         reflectance::{FULL, LitMaterial, Reflectance},
     },
     math::vector::zip,
@@ -85,6 +85,12 @@ impl<'a, C: Pixel> MaterialTables<'a, C> {
     #[must_use]
     pub fn one_light_rgb(&self) -> Option<OneLightRgb<'a, C>> {
         self.three_channels().then_some(self.sums())
+    }
+
+    /// The colours of a surface whose corners have colours, under the only light. Domain: [`Reflectance::lights`] is 1, three channels.
+    #[inline(always)]
+    pub(crate) fn coloured_rgb(&self) -> ColouredRgb<'a, C> {
+        ColouredRgb { sums: self.sums(), ambient: self.reflectance.pure_ambient() }
     }
 
     /// Whether the material has three channels. Formats of greys never have, so the compiler leaves this code out for them.
@@ -183,6 +189,7 @@ mod tests {
             material,
             &[Light { colour, ..Light::new_zeroed() }],
             (Highlight::Half, false),
+            false,
         );
         reflectance
     }

@@ -1,5 +1,6 @@
 //! The lights of one frame, and their reflection by materials.
 
+pub mod albedo;
 pub mod constant_lights;
 pub mod highlight_tables;
 pub mod lights;

@@ -5,16 +5,17 @@ use crate::{
         product::{product, unsigned_product},
         quotient::long,
     },
-    features::{COLOURS, LIGHT_SHAPES, LIGHTS, SKIPS},
+    features::{COLOURS, LIGHT_SHAPES, LIGHTS, SKIPS, VERTEX_COLOURS},
     format::{BIAS, CHANNEL, COSINE, Intensity, LEVEL, PIXEL_COSINE, UNIT},
     lighting::{
+        albedo::Parts,
         constant_lights::{FACTOR, LARGEST, Sum, Sums},
         lights::{Incident, ROOM, Source, UnitNormal, part_of_sky},
         shape::STRENGTH,
     },
     math::{
         highlight_lut::{Base, ENTRY, HighlightCurve, HighlightLut, square},
-        vector::zip,
+        vector::{map, zip},
     },
     pixel::{Channels, gamma::Gamma, half_step, steps},
     scene::{Colour, LightTerms, largest},
@@ -187,7 +188,8 @@ impl Reflectance {
     };
 
     /// Computes the reflectance of `material` under `lights`, for a method with these highlights and for a pixel format with these `channels`.
-    /// If the method allows it, and there is one channel and one light, the table of highlights `holds_levels` instead of fractions.
+    /// If the method allows it, and there is one channel and one light, the table of highlights `holds_levels` instead of fractions. A material
+    /// `is_coloured` if a mesh has it whose corners have colours.
     pub fn fill(
         &mut self,
         channels: Channels,
@@ -195,13 +197,15 @@ impl Reflectance {
         material: &Material,
         lights: &[Light],
         (highlight, holds_levels): (Highlight, bool),
+        is_coloured: bool,
     ) {
+        let is_coloured = VERTEX_COLOURS && is_coloured;
         let Channels { depth, is_gray, is_coarse, .. } = channels;
         let LightTerms { colours: terms, base, are_one_channel } = LightTerms::new(&channels, ambient, material, lights);
         let is_plain = !LIGHT_SHAPES || !lights.iter().any(Light::has_shape);
         // Loops for several lights have three channels.
         let are_several = LIGHTS && lights.len() > 1 && lights.iter().all(|light| light.kind != POINT);
-        let one_channel = !COLOURS || are_one_channel && (is_gray || !(holds_levels && are_several));
+        let one_channel = !COLOURS || are_one_channel && (is_gray || !(is_coloured || holds_levels && are_several));
         self.depth = depth;
         self.quarter = 0;
         self.three_channels = u8::from(!one_channel);
@@ -221,16 +225,18 @@ impl Reflectance {
         let fits = if one_channel { total < LARGEST } else { excess == 0 };
         let (ambient, diffuse) = (self.ambient, self.gains[0].diffuse);
         let within = zip(ambient, diffuse, |ambient, diffuse| ambient + i32::from(diffuse) <= FULL) == [true; 3];
-        self.has_ramp = u8::from(one_channel || is_coarse && lights.len() == 1 && within);
+        self.has_ramp = u8::from(!is_coloured && (one_channel || is_coarse && lights.len() == 1 && within));
         let most = (1..3).fold(0, |most, k| if diffuse[k] > diffuse[most] { k } else { most });
         self.ramp = [ambient[most], diffuse[most].into()];
         // There are loops for one near light that has a range.
         let is_ranged = |light: &Light| light.kind == POINT && light.axis == [0; 3];
         let is_one = lights.len() == 1 && (is_plain || lights.iter().all(is_ranged));
-        let are_two = lights.len() == 2 && !one_channel && is_plain;
-        self.lights = match holds_levels && fits {
+        let are_two = lights.len() == 2 && !one_channel && is_plain && !is_coloured;
+        // There are no loops for colours of corners in greys.
+        let has_loops = holds_levels && !(is_coloured && is_gray);
+        self.lights = match has_loops && fits {
             true if is_one || are_two => lights.len() as u8,
-            _ if holds_levels && are_several && !one_channel => SUMMED,
+            _ if has_loops && are_several && !one_channel => SUMMED,
             _ => 0,
         };
         self.has_two_lights = u8::from(are_two && fits);
@@ -380,6 +386,14 @@ impl Reflectance {
         self.quarter
     }
 
+    /// The levels of ambient light in the sums of the first light, without what is added there for rounding and dither.
+    #[must_use]
+    pub(crate) fn pure_ambient(&self) -> [i32; 3] {
+        let ([[first, ..], _], less) = (&self.sums, self.summed_excess());
+        let raised = zip(steps(self.depth, -self.quarter), self.depth, |step, depth| (half_step(depth) >> less) + (step >> less));
+        zip(map(*first, Sum::ambient), raised, i32::wrapping_sub)
+    }
+
     /// Turns two savings on or off: leaving out highlights where none can be seen, and lights that do not reach a triangle.
     #[cfg(feature = "skips")]
     pub(crate) fn leave_out(&mut self, highlights: bool, lights: bool) {
@@ -427,6 +441,14 @@ impl Reflectance {
         let ([gains, ..], n) = (&self.gains, channel % 3);
         let diffuse = diffuse_level([self.ambient[n], gains.diffuse[n].into()], cosine);
         (diffuse + reflected((0, gains.specular[n]), 0, highlight)).min(FULL)
+    }
+
+    /// The parts of [`Self::reflection`].
+    #[inline]
+    pub(crate) fn reflected_parts(&self, cosine: i32, highlight: u32) -> Parts {
+        let [gains, ..] = &self.gains;
+        let diffuse = zip(self.ambient, gains.diffuse, |ambient, diffuse| diffuse_level([ambient, diffuse.into()], cosine));
+        Parts { diffuse, specular: map(gains.specular, |specular| reflected((0, specular), 0, highlight)) }
     }
 
     /// The levels of the table of colours without highlight at six nodes with these cosines, under one light, not clamped, Q9.7. Domain:
@@ -657,6 +679,36 @@ impl<'f> LitMaterial<'f> {
             self.add(&mut levels, gains, light.diffuse, light.highlight);
         }
         levels.map(|level| level.min(FULL))
+    }
+
+    /// The parts of [`Self::levels`].
+    #[inline]
+    pub(crate) fn parts(self, incident: impl Iterator<Item = Incident>) -> Parts {
+        let mut parts = Parts { diffuse: self.ambient, specular: [0; 3] };
+        for (gains, Incident { towards, half, strength }) in self.gains.iter().zip(incident) {
+            let mut light = Reflection { diffuse: towards, highlight: self.highlight_at(half) };
+            if LIGHT_SHAPES {
+                light = light.weakened(strength, 0);
+            }
+            self.add(&mut parts.diffuse, gains, light.diffuse, 0);
+            self.add(&mut parts.specular, gains, 0, light.highlight);
+        }
+        parts
+    }
+
+    /// The parts of [`Self::constant_levels`].
+    #[inline(never)]
+    pub(crate) fn constant_parts<N: UnitNormal>(self, sources: &[Source], normal: &N) -> Parts {
+        let mut parts = Parts { diffuse: self.ambient, specular: [0; 3] };
+        for (gains, source) in self.gains.iter().zip(sources) {
+            let Some(&[towards, half]) = source.directional() else { continue };
+            let cosine = normal.cosine(towards);
+            let (towards, highlight) =
+                if source.is_sky() { (part_of_sky(cosine, COSINE), 0) } else { (cosine, self.highlight(normal.cosine(half))) };
+            self.add(&mut parts.diffuse, gains, towards, 0);
+            self.add(&mut parts.specular, gains, 0, highlight);
+        }
+        parts
     }
 
     /// Levels under constant lights, Q9.7 in [0, 255], of a unit normal.

@@ -9,7 +9,11 @@ use crate::{
         projection::{ScreenVertex, State},
         viewport::{Bounds, Viewport},
     },
-    mesh::vertices::VertexStage,
+    lighting::albedo::IfColoured,
+    mesh::{
+        painting::{self, Corners, Painting},
+        vertices::VertexStage,
+    },
     method::{Method, Shading, TriangleSetup},
     raster::triangle::{ScreenTriangle, turn},
     setup::{
@@ -33,6 +37,8 @@ pub(crate) struct MeshPass<'f> {
     pub(crate) first_triangle: u32,
     pub(crate) triangles: &'f [Triangle],
     pub(crate) vertices: &'f [Vertex],
+    /// The colours at the corners of the triangles.
+    pub(crate) painting: Painting<'f>,
     /// The cached vertices on the screen.
     pub(crate) cached: &'f [ScreenVertex],
     pub(crate) viewport: Viewport,
@@ -52,6 +58,7 @@ struct MeshTriangle<'f> {
     triangle: &'f Triangle,
     /// The vertices of the mesh, to which the triangle's indices point.
     vertices: &'f [Vertex],
+    albedos: Corners,
 }
 
 /// The rows of a band, and what draws a triangle there that is set up. It returns the number of its pixels.
@@ -68,11 +75,25 @@ impl MeshPass<'_> {
         key.triangle().wrapping_sub(self.first_triangle) as usize
     }
 
+    /// The colours at the corners of a triangle.
+    #[inline(always)]
+    pub(super) fn corner_colours(&self, key: TriangleKey) -> Corners {
+        self.painting.corners(self.index(key))
+    }
+
     /// The cached corners on the screen; `None` if one is not cached.
     #[inline(always)]
     pub(super) fn corners(&self, triangle: &Triangle) -> Option<[&ScreenVertex; 3]> {
         let [a, c, b] = triangle.corners;
         Some([self.cached.get(usize::from(a))?, self.cached.get(usize::from(b))?, self.cached.get(usize::from(c))?])
+    }
+
+    /// Copies of `corners` with their levels in these colours, if vertices hold [`Parts`](crate::lighting::albedo::Parts).
+    #[inline(always)]
+    pub(super) fn painted(&self, corners: [&ScreenVertex; 3], albedos: &Corners) -> IfColoured<Option<[ScreenVertex; 3]>> {
+        albedos
+            .each_ref()
+            .map(|albedos| albedos.as_ref().filter(|_| self.stage.holds_parts()).map(|albedos| painting::painted(corners, albedos)))
     }
 
     /// Whether other triangles may overlap this one.
@@ -93,28 +114,31 @@ impl MeshPass<'_> {
 
     /// Sets up a triangle of any size, in parts where it is clipped, and calls `draw` for each part, which returns the number of its
     /// pixels. The band is `width` pixels wide, and `rows` are its first row and one past its last. Returns the sum.
-    pub(super) fn set_up(&self, triangle: &Triangle, width: i32, rows: [i32; 2], draw: &mut dyn FnMut(&TriangleSetup<'_>) -> u32) -> u32 {
+    pub(super) fn set_up(&self, index: usize, width: i32, rows: [i32; 2], draw: &mut dyn FnMut(&TriangleSetup<'_>) -> u32) -> u32 {
         let target = &mut Target { width, rows, draw };
+        // The mesh has every triangle of its entries.
+        let Some(triangle) = self.triangles.get(index) else { return 0 };
+        let albedos = self.painting.corners(index);
         match self.corners(triangle).filter(is_ready) {
-            Some(corners) => self.set_up_placed(&MeshTriangle { corners, triangle, vertices: self.vertices }, target),
-            None => self.transform_anew(triangle, target),
+            Some(corners) => self.set_up_placed(&MeshTriangle { corners, triangle, vertices: self.vertices, albedos }, target),
+            None => self.transform_anew(triangle, albedos, target),
         }
     }
 
     /// Sets up a triangle with a corner that is not cached or not on the screen: transforms all three corners, and clips the triangle if needed.
     #[cold]
     #[inline(never)]
-    fn transform_anew(&self, triangle: &Triangle, target: &mut Target<'_>) -> u32 {
+    fn transform_anew(&self, triangle: &Triangle, albedos: Corners, target: &mut Target<'_>) -> u32 {
         let [a, c, b] = triangle.corners.map(|corner| self.vertices.get(usize::from(corner)));
         let (Some(a), Some(b), Some(c)) = (a, b, c) else { return 0 };
         let vertices = [a, b, c];
         let [a, b, c] = &vertices.map(|vertex| self.stage.transform(vertex));
         // Decision: clip.
         if is_ready(&[a, b, c]) {
-            return self.set_up_placed(&MeshTriangle { corners: [a, b, c], triangle, vertices: self.vertices }, target);
+            return self.set_up_placed(&MeshTriangle { corners: [a, b, c], triangle, vertices: self.vertices, albedos }, target);
         }
         // The fan that clipping leaves.
-        let polygon = clip::clip(self.stage.view, vertices);
+        let polygon = clip::clip_coloured(self.stage.view, vertices, painting::shares(&albedos));
         let place = |cut: &clip::Cut| {
             let [x, y, depth] = cut.place;
             ScreenVertex { x, y, depth, ..self.stage.transform(&cut.vertex) }
@@ -126,7 +150,8 @@ impl MeshPass<'_> {
                 let vertices = [first.vertex, second.vertex, third.vertex];
                 let corners = [&place(first), &place(second), &place(third)];
                 let triangle = &clip::record(triangle, &vertices);
-                pixels += self.set_up_placed(&MeshTriangle { corners, triangle, vertices: &vertices }, target);
+                let albedos = painting::of_shares(&albedos, [first.colour, second.colour, third.colour]);
+                pixels += self.set_up_placed(&MeshTriangle { corners, triangle, vertices: &vertices, albedos }, target);
             }
         }
         pixels
@@ -145,10 +170,16 @@ impl MeshPass<'_> {
         if gradients.is_thinner_than(MAX_FINE_THINNESS) && screen.covers_nothing() {
             return 0;
         }
+        let albedos = painting::turned(placed.albedos, screen.turned);
+        let (mut corners, painted) = (turn(placed.corners, screen.turned), self.painted(turn(placed.corners, screen.turned), &albedos));
+        if let Some([a, b, c]) = painted.first().and_then(Option::as_ref) {
+            corners = [a, b, c];
+        }
         let setup = TriangleSetup {
             screen: &screen,
             gradients: &gradients,
-            corners: turn(placed.corners, screen.turned),
+            corners,
+            albedos: painting::lent(&albedos),
             turned: screen.turned,
             triangle: placed.triangle,
             vertices: placed.vertices,

@@ -1,7 +1,7 @@
 //! The vertices of one mesh, transformed to the screen and lit.
 
 use crate::{
-    features::ALWAYS_CONSTANT,
+    features::{ALWAYS_CONSTANT, VERTEX_COLOURS},
     format::UNIT,
     geometry::{
         projection::{ScreenVertex, State, View},
@@ -35,9 +35,17 @@ pub(crate) struct VertexStage<'f> {
     pub(crate) reflectance: LitMaterial<'f>,
     /// The light that the method needs at vertices.
     pub(crate) light: VertexLight,
+    /// Whether corners of triangles have colours.
+    pub(crate) is_coloured: bool,
 }
 
 impl VertexStage<'_> {
+    /// Whether vertices hold [`Parts`](crate::lighting::albedo::Parts) in place of levels, because the corners of triangles have colours.
+    #[inline(always)]
+    pub(crate) fn holds_parts(&self) -> bool {
+        VERTEX_COLOURS && self.is_coloured && !matches!(self.light, VertexLight::Cosines | VertexLight::CosinesAndReflection)
+    }
+
     /// The corners `[x, y]` on the screen, clockwise, which is against the order of the stream; `None` if one is not cached or needs
     /// clipping. The mesh is `cached` from its vertex `first` on.
     #[inline(always)]
@@ -146,10 +154,15 @@ impl VertexStage<'_> {
     fn under_lights(&self, vertex: &Vertex) -> [i32; 4] {
         let (normal, reflectance, lighting) = (wide(vertex.normal), &self.reflectance, self.lighting);
         let has_levels = !matches!(self.light, VertexLight::Cosines | VertexLight::CosinesAndReflection);
+        let holds_parts = self.holds_parts();
         match lighting.is_constant() {
+            true if holds_parts => reflectance.constant_parts(lighting.sources(), &MeanNormal::at(normal)).packed(),
             true if has_levels => of_levels(reflectance.constant_levels(lighting.sources(), &MeanNormal::at(normal))),
             true if reflectance.has_two_lights() => self.cosines_of_two_lights(normal),
             true if reflectance.sums_lights() => summed::at_vertex(reflectance, lighting.sources(), normal),
+            false if holds_parts => {
+                reflectance.parts(lighting.incident(point(vertex.position), map(normal, |c| c << (30 - UNIT)))).packed()
+            }
             false if has_levels => {
                 of_levels(reflectance.levels(lighting.incident(point(vertex.position), map(normal, |c| c << (30 - UNIT)))))
             }
@@ -163,7 +176,9 @@ impl VertexStage<'_> {
         match light {
             VertexLight::Cosines | VertexLight::CosinesOrLevels => [towards, half, 0, 0],
             VertexLight::Levels => [self.reflectance.level([towards, half]); 4],
-            _ if self.reflectance.three_channels() => [towards, half, self.reflectance.highlight(half) as i32, 0],
+            _ if self.reflectance.three_channels() || VERTEX_COLOURS && self.is_coloured => {
+                [towards, half, self.reflectance.highlight(half) as i32, 0]
+            }
             _ => [towards, half, self.reflectance.level([towards, half]), 0],
         }
     }

@@ -1,18 +1,22 @@
 //! Lighting models: how interpolated fields become reflected light at a pixel.
 
 use crate::{
-    features::PERSPECTIVE,
-    format::MAX_LIGHTS,
+    features::{COLOURED, PERSPECTIVE, VERTEX_COLOURS},
+    format::{COSINE, MAX_LIGHTS},
     interpolate::{Constant, Patch, Walker, field::Field, perspective::PerspectivePatch},
     lighting::{
+        albedo::{Albedo, IfColoured},
         lights::{SHAPES, Source, cosine},
         reflectance::{Factors, LitMaterial, Reflection},
     },
-    math::highlight_lut::{CosineLookup, HighlightLut},
+    math::{
+        highlight_lut::{CosineLookup, HighlightLut},
+        vector::{map, zip},
+    },
     method::{
         Shading, TriangleSetup,
         node::Node,
-        products::{LinearNodes, QuadraticNodes, fitted, linear, quadratic},
+        products::{LinearNodes, QuadraticNodes, fitted, linear, quadratic, signed},
         weakening::{Change, Way},
     },
     raster::canvas::{CHUNK, Canvas, SpanShader, SpanTarget},
@@ -46,6 +50,44 @@ pub enum Lit<V, D> {
     Fully(V),
 }
 
+/// The colour of a surface over a triangle: red and green, then blue. Shares are walked in units of 2^-31.
+struct Coloured<'a, W> {
+    ways: [W; 2],
+    /// Where the sums of all highlights begin.
+    dark: [i32; 3],
+    /// For a run of pixels, the sums of all highlights.
+    highlights: &'a mut [[i32; 3]; CHUNK],
+}
+
+impl<W: Patch<Walker: Walker<Value = [u32; 2]>>> Coloured<'_, W> {
+    /// Multiplies the sums of ambient and diffuse light of `run` pixels by the colour, and adds highlights. `enter` makes walkers.
+    fn paint(&mut self, levels: &mut [[i32; 3]; CHUNK], run: usize, enter: impl Fn(&W) -> W::Walker) {
+        let mut walkers = self.ways.each_ref().map(enter);
+        for (sums, highlights) in levels.iter_mut().zip(&*self.highlights).take(run).rev() {
+            walkers.iter_mut().for_each(Walker::step);
+            let [[red, green], [blue, _]] = walkers.each_ref().map(Walker::value);
+            let reflected = zip(*sums, [red, green, blue], |level, walked| (i64::from(level) * share(walked) >> 16) as i32);
+            *sums = zip(reflected, *highlights, i32::wrapping_add);
+        }
+    }
+}
+
+/// Converts a walked share to Q0.16.
+fn share(walked: u32) -> i64 {
+    i64::from(signed(walked).max(0) >> (COSINE - 16))
+}
+
+/// The shares of red and green, and of blue, over a triangle whose corners have these colours.
+fn ways(albedos: &[Albedo; 3]) -> [Way; 2] {
+    let [a, b, c] = albedos.map(|albedo| map(albedo.shares(), |share| share << (COSINE - 16)));
+    let linear = |k: usize| {
+        let (a, b, c) = (a[k], b[k], c[k]);
+        let middle = |a: i32, b: i32| (a >> 1) + (b >> 1);
+        [a, b, c, middle(a, b), middle(b, c), middle(c, a)]
+    };
+    [quadratic([linear(0), linear(1)]), quadratic([linear(2), [0; 6]])]
+}
+
 /// How a light changes over a triangle: nothing in a program without the feature.
 type Changes<'s, W> = [Change<'s, W>; SHAPES];
 
@@ -74,6 +116,8 @@ struct ManyLights<'a, 's, K, P, D, W, F, S> {
     lut: CosineLookup<'a>,
     /// Where the sums of all lights begin.
     ambient: [i32; 3],
+    /// The colour of the surface, if the corners have colours.
+    colour: IfColoured<Option<Coloured<'a, W>>>,
     /// For a run of pixels, what all lights share, and `levels`, the sums of all lights. Both are written before they are read, and so
     /// cleared once a triangle and not once a span.
     shared: &'a mut [S; CHUNK],
@@ -100,7 +144,8 @@ where
     F: LightingModel<<K::Walker as Walker>::Value, <P::Walker as Walker>::Value, <D::Walker as Walker>::Value>,
 {
     fn span(&mut self, rows: i32, end: i32, count: usize, target: &mut dyn SpanTarget) {
-        let Self { reflectance, model, common, lights, diffuse, lut, ambient, shared, levels } = self;
+        let Self { reflectance, model, common, lights, diffuse, lut, ambient, colour, shared, levels } = self;
+        let mut colour = colour.first_mut().and_then(Option::as_mut);
         let mut common = enter(common, rows, end);
         let (intensity, floor) = (reflectance.intensities(), reflectance.highlights.floor());
         let mut first = count;
@@ -119,6 +164,9 @@ where
                     shared[k % CHUNK] = model.common(common.value());
                     let [r, g, b] = *ambient;
                     levels[k % CHUNK] = [r, g, b];
+                    if let Some(colour) = &mut colour {
+                        colour.highlights[k % CHUNK] = colour.dark;
+                    }
                 }
             }
             if visible == 0 {
@@ -133,7 +181,14 @@ where
                     changes.iter_mut().for_each(Change::step);
                     if visible & (1 << k) != 0 {
                         let reflection = model.reflect(*light, &shared[k % CHUNK], walker.value(), *lut);
-                        factors.add(&mut levels[k % CHUNK], changed(&changes, reflection, floor));
+                        let reflection = changed(&changes, reflection, floor);
+                        match &mut colour {
+                            Some(colour) => {
+                                factors.add_diffuse(&mut levels[k % CHUNK], reflection.diffuse);
+                                factors.add(&mut colour.highlights[k % CHUNK], Reflection { diffuse: 0, ..reflection });
+                            }
+                            None => factors.add(&mut levels[k % CHUNK], reflection),
+                        }
                     }
                 }
             }
@@ -151,6 +206,9 @@ where
                         }
                     }
                 }
+            }
+            if let Some(colour) = &mut colour {
+                colour.paint(levels, run, |way| enter(way, rows, entry));
             }
             for sums in levels.iter_mut().take(run) {
                 let [r, g, b] = intensity(*sums);
@@ -180,7 +238,8 @@ impl<'a, 's, K, P, D, W, F, S> ManyLights<'a, 's, K, P, D, W, F, S> {
     fn ways(&mut self) -> impl Iterator<Item = &mut W> + use<'_, 'a, 's, K, P, D, W, F, S> {
         let changes =
             self.lights.iter_mut().flat_map(|(.., changes)| changes).chain(self.diffuse.iter_mut().flat_map(|(.., changes)| changes));
-        changes.filter_map(Change::way)
+        let colours = self.colour.iter_mut().flatten().flat_map(|colour| &mut colour.ways);
+        changes.filter_map(Change::way).chain(colours)
     }
 }
 
@@ -278,10 +337,14 @@ impl Shading<'_> {
         // Renderers refuse methods that look up highlights if there is no table.
         let Some(lut) = reflectance.table().map(HighlightLut::by_cosine) else { return 0 };
         let mut ambient = reflectance.ambient_sums();
+        let mut pure = ambient;
         let (mut lights, mut diffuse) = (heapless::Vec::<_, MAX_LIGHTS>::new(), heapless::Vec::<_, MAX_LIGHTS>::new());
         let (mut without_highlight, mut without_light) = (0, 0);
         for (light, source) in self.lighting.sources().iter().enumerate() {
             let factors = reflectance.factors(light);
+            if VERTEX_COLOURS {
+                reflectance.add_no_highlight(&factors, &mut pure);
+            }
             let changes = [(); SHAPES].map(|()| Change::of(source, setup.vertices()));
             let is_dark = changes.iter().any(|change| matches!(change, Change::Dark));
             // There is room for as many lights as a frame has.
@@ -303,7 +366,15 @@ impl Shading<'_> {
         // Lent, since all of this would be copied if it were moved.
         let (shared, levels) = (&mut [F::Common::default(); CHUNK], &mut [[0; 3]; CHUNK]);
         let (lights, diffuse) = (&mut lights, &mut diffuse);
-        setup.draw_spans(&mut ManyLights { reflectance, model, common, lights, diffuse, lut, ambient, shared, levels }, canvas)
+        let mut room = [[[0; 3]; CHUNK]; COLOURED];
+        let dark = zip(ambient, pure, i32::wrapping_sub);
+        let mut rooms = room.iter_mut();
+        let colour = setup.albedos.map(|albedos| {
+            let ways = ways(albedos?).map(&walked);
+            Some(Coloured { ways, dark, highlights: rooms.next()? })
+        });
+        let ambient = if setup.albedos().is_some() { pure } else { ambient };
+        setup.draw_spans(&mut ManyLights { reflectance, model, common, lights, diffuse, lut, ambient, colour, shared, levels }, canvas)
     }
 
     /// Returns the cosines N·L (normal and direction to the light) and N·H (normal and half vector between light and viewer) as fields that

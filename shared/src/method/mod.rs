@@ -28,7 +28,10 @@ use crate::{
     format::{BIAS, CHANNEL, INTENSITY, LEVEL, NORMAL_LENGTH, WALK},
     geometry::viewport::first_centre,
     interpolate::{Checkerboard, perspective::PerspectivePatch},
-    lighting::material_tables::MaterialTables,
+    lighting::{
+        albedo::{Albedo, IfColoured},
+        material_tables::MaterialTables,
+    },
     pixel::{Pixel, half_step, ramps::Ramps},
     raster::{
         active::ActiveTriangle,
@@ -125,6 +128,8 @@ pub(crate) struct Style {
     pub(crate) by_canvas: bool,
     /// Whether light is interpolated in perspective.
     pub(crate) perspective: bool,
+    /// Whether the corners of triangles have colours.
+    pub(crate) is_coloured: bool,
 }
 
 impl Style {
@@ -135,7 +140,7 @@ impl Style {
 
     /// Whether loops for one constant light, or for two, can draw it.
     pub(crate) fn has_one_light_or_two(self) -> bool {
-        (1..=2).contains(&self.lights) && self.is_plain()
+        (1..=2).contains(&self.lights) && self.is_plain() && !self.is_coloured
     }
 }
 
@@ -225,6 +230,8 @@ pub struct TriangleSetup<'f> {
     pub gradients: &'f Gradients,
     /// The corners on the screen with their light: the top one first, then clockwise.
     pub corners: [&'f ScreenVertex; 3],
+    /// The colours of the corners, if they have any.
+    pub(crate) albedos: IfColoured<Option<&'f [Albedo; 3]>>,
     /// The triangle's record in the stream.
     #[doc(hidden)]
     pub triangle: &'f Triangle,
@@ -259,6 +266,12 @@ impl TriangleSetup<'_> {
         // A checked stream has all vertices.
         let vertex = |corner: u16| self.vertices.get(usize::from(corner)).unwrap_or(&Vertex::ZERO);
         turn([vertex(a), vertex(b), vertex(c)], self.turned)
+    }
+
+    /// The colours of the corners; `None` if they have none.
+    #[inline(always)]
+    pub(crate) fn albedos(&self) -> Option<&[Albedo; 3]> {
+        self.albedos.first().copied().flatten()
     }
 
     /// Returns the inverse depths of the corners (Q0.28), for perspective-correct interpolation. Returns `None` if that is off, or if all

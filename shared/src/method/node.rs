@@ -2,12 +2,15 @@
 
 use crate::{
     arch::product::{by_fraction, product},
-    features::PERSPECTIVE,
+    features::{COLOURED, PERSPECTIVE},
     format::{COSINE, INVERSE_SUM_LENGTH, POSITION, UNIT},
-    lighting::lights::{InterpolatedNormal, MeanNormal, cosine, over_length, point, vertex_cosine},
+    lighting::{
+        albedo::{Albedo, IfColoured},
+        lights::{InterpolatedNormal, MeanNormal, UnitNormal, cosine, over_length, point, vertex_cosine},
+    },
     math::{
         rsqrt::{HalfRsqrt, LEAST, rsqrt_wide},
-        vector::{add, dot, normalise, wide, zip},
+        vector::{add, dot, map, normalise, wide, zip},
     },
     method::{Middles, Shading, TriangleSetup},
     stream::record::Vertex,
@@ -23,6 +26,13 @@ pub struct Node {
     pub position: [i32; 3],
     /// Unit normal, Q2.30.
     pub normal: [i32; 3],
+    /// The colour of the surface, if the corners of the triangle have colours.
+    pub albedo: IfColoured<Option<Albedo>>,
+}
+
+impl Node {
+    /// The colour of a triangle whose corners have none.
+    pub const NO_COLOUR: IfColoured<Option<Albedo>> = [None; COLOURED];
 }
 
 /// Whether highlights of this exponent are so steep that rounding of the stream's edge constants to 16 bits would show: an error of 2^-17 in a cosine
@@ -37,6 +47,9 @@ impl Shading<'_> {
     /// Computes the light levels of red, green and blue at `node`, a point of the triangle with its unit normal. They are Q9.7 from 0 to
     /// 255.
     pub fn levels(&self, node: &Node) -> [i32; 3] {
+        if let Some(albedo) = node.albedo.first().copied().flatten() {
+            return albedo.lit(self.reflectance.parts(self.lighting.incident(node.position, node.normal)));
+        }
         if let Some([towards, half]) = self.constant {
             return self.reflectance.one_light([cosine(node.normal, towards), cosine(node.normal, half)]);
         }
@@ -55,24 +68,34 @@ impl Shading<'_> {
             && !is_steep(self.exponent)
             && let Some([ab, bc, ca]) = &setup.middle_normals()
         {
-            let levels = |normal| self.reflectance.constant_levels(self.lighting.sources(), normal);
-            return [levels(ab), levels(bc), levels(ca)];
+            let [c_ab, c_bc, c_ca] = setup.middle_colours([1 << 15; 3]);
+            let levels = |normal, colour| self.constant_levels(normal, colour);
+            return [levels(ab, c_ab), levels(bc, c_bc), levels(ca, c_ca)];
         }
         let [.., ab, bc, ca] = setup.six_nodes(self.exponent);
         [self.levels(&ab), self.levels(&bc), self.levels(&ca)]
+    }
+
+    /// The levels of a unit normal under constant lights, on a surface of this colour.
+    #[inline(always)]
+    pub(crate) fn constant_levels<N: UnitNormal>(&self, normal: &N, colour: IfColoured<Option<Albedo>>) -> [i32; 3] {
+        let (reflectance, sources) = (self.reflectance, self.lighting.sources());
+        match colour.first().copied().flatten() {
+            Some(albedo) => albedo.lit(reflectance.constant_parts(sources, normal)),
+            None => reflectance.constant_levels(sources, normal),
+        }
     }
 
     /// The light levels at these shares of the edges.
     #[inline(never)]
     fn levels_at(&self, setup: &TriangleSetup<'_>, shares: [u16; 3]) -> [[i32; 3]; 3] {
         if self.lighting.is_constant() && !is_steep(self.exponent) {
-            let levels = |vector, half_reciprocal| {
-                self.reflectance.constant_levels(self.lighting.sources(), &InterpolatedNormal { vector, half_reciprocal })
-            };
+            let levels = |vector, half_reciprocal, colour| self.constant_levels(&InterpolatedNormal { vector, half_reciprocal }, colour);
             let ([ab, bc, ca], [rab, rbc, rca]) = (seen_normals(setup.vertices(), shares), setup.half_reciprocals(shares));
-            return [levels(ab, rab), levels(bc, rbc), levels(ca, rca)];
+            let [c_ab, c_bc, c_ca] = setup.middle_colours(shares);
+            return [levels(ab, rab, c_ab), levels(bc, rbc, c_bc), levels(ca, rca, c_ca)];
         }
-        let [ab, bc, ca] = seen_nodes(setup.vertices(), shares);
+        let [ab, bc, ca] = seen_nodes(setup, shares);
         [self.levels(&ab), self.levels(&bc), self.levels(&ca)]
     }
 }
@@ -81,16 +104,20 @@ impl Shading<'_> {
 impl TriangleSetup<'_> {
     /// Returns position and unit normal of each corner in object space, for [`Shading::levels`].
     pub fn corner_nodes(&self) -> [Node; 3] {
-        self.vertices().map(|vertex| Node { position: point(vertex.position), normal: wide(vertex.normal).map(|c| c << FINER) })
+        let [x, y, z] = self.corner_colours();
+        let [a, b, c] = self.vertices();
+        let node =
+            |vertex: &Vertex, albedo| Node { position: point(vertex.position), normal: wide(vertex.normal).map(|c| c << FINER), albedo };
+        [node(a, x), node(b, y), node(c, z)]
     }
 
     /// Returns position and unit normal, in object space, of the three corners and then of the midpoints of the edges 0-1, 1-2 and 2-0.
     /// `exponent` is the material's, which decides how exactly the normals are computed.
     pub fn six_nodes(&self, exponent: u16) -> [Node; 6] {
-        let sums = self.sums();
+        let (sums, albedos) = (self.sums(), self.middle_colours([1 << 15; 3]));
         let [a, b, c] = self.corner_nodes();
         if is_steep(exponent) {
-            let [ab, bc, ca] = sums.map(|(position, sum)| Node { position, normal: normalise(sum) });
+            let [ab, bc, ca] = zip(sums, albedos, |(position, sum), albedo| Node { position, normal: normalise(sum), albedo });
             return [a, b, c, ab, bc, ca];
         }
         let inverses = self.inverse_sum_lengths();
@@ -98,7 +125,8 @@ impl TriangleSetup<'_> {
             let (position, sum) = sums[k];
             let inverse = inverses[k] as i32;
             // Q3.14 times Q1.17: one bit more than wanted.
-            Node { position, normal: sum.map(|c| (product(c, inverse) >> (UNIT + INVERSE_SUM_LENGTH - 30)) as i32) }
+            let normal = sum.map(|c| (product(c, inverse) >> (UNIT + INVERSE_SUM_LENGTH - 30)) as i32);
+            Node { position, normal, albedo: albedos[k] }
         };
         [a, b, c, middle(0), middle(1), middle(2)]
     }
@@ -106,8 +134,33 @@ impl TriangleSetup<'_> {
     /// [`Self::six_nodes`] with the nodes `middles`.
     pub(crate) fn six_nodes_at(&self, middles: Middles, exponent: u16) -> [Node; 6] {
         let Middles(Some(shares)) = middles else { return self.six_nodes(exponent) };
-        let ([a, b, c], [ab, bc, ca]) = (self.corner_nodes(), seen_nodes(self.vertices(), shares));
+        let ([a, b, c], [ab, bc, ca]) = (self.corner_nodes(), seen_nodes(self, shares));
         [a, b, c, ab, bc, ca]
+    }
+
+    /// The colours of the corners, if they have any.
+    fn corner_colours(&self) -> [IfColoured<Option<Albedo>>; 3] {
+        [0, 1, 2].map(|k| self.albedos.map(|albedos| albedos.and_then(|albedos| albedos.get(k).copied())))
+    }
+
+    /// The colours at these shares of the edges 0-1, 1-2 and 2-0, if the corners have any.
+    pub(crate) fn middle_colours(&self, [ab, bc, ca]: [u16; 3]) -> [IfColoured<Option<Albedo>>; 3] {
+        let between = |albedos: &[Albedo; 3]| {
+            let [a, b, c] = *albedos;
+            [a.towards(b, ab), b.towards(c, bc), c.towards(a, ca)]
+        };
+        [0, 1, 2].map(|k| self.albedos.map(|albedos| albedos.and_then(|albedos| between(albedos).get(k).copied())))
+    }
+
+    /// The colours at the corners and the [`Middles`], if the corners have any.
+    pub(crate) fn six_colours(&self) -> Option<[Albedo; 6]> {
+        let ([ab, bc, ca], [a, b, c]) = (self.middles().shares(), *self.albedos()?);
+        Some([a, b, c, a.towards(b, ab), b.towards(c, bc), c.towards(a, ca)])
+    }
+
+    /// The colour where the corners have these weights, if they have colours. The weights are not negative, and their sum is at most 65,536.
+    pub fn colour_at(&self, weights: [i32; 3]) -> IfColoured<Option<Albedo>> {
+        self.albedos.map(|albedos| Some(Albedo::mean(albedos?, map(weights, |weight| weight as u32))))
     }
 
     /// Position, and sum of the ends' normals (Q3.14), at the middle of each edge.
@@ -306,12 +359,14 @@ fn seen_normals([a, b, c]: [&Vertex; 3], [ab, bc, ca]: [u16; 3]) -> [[i32; 3]; 3
 
 /// The points at these shares of the edges, with their unit normals.
 #[inline(never)]
-fn seen_nodes(vertices: [&Vertex; 3], shares: [u16; 3]) -> [Node; 3] {
+fn seen_nodes(setup: &TriangleSetup<'_>, shares: [u16; 3]) -> [Node; 3] {
+    let (vertices, albedos) = (setup.vertices(), setup.middle_colours(shares));
     let [a, b, c] = vertices.map(|vertex| point(vertex.position));
     let between = |from, to, share| zip(from, to, |from, to| mixed(from, to, share));
     let [ab, bc, ca] = shares;
     let positions = [between(a, b, ab), between(b, c, bc), between(c, a, ca)];
-    zip(positions, seen_normals(vertices, shares), |position, normal| Node { position, normal: normalise(normal) })
+    let places = zip(positions, seen_normals(vertices, shares), |position, normal| (position, normalise(normal)));
+    zip(places, albedos, |(position, normal), albedo| Node { position, normal, albedo })
 }
 
 /// [`TriangleSetup::six_seen`] by the lengths of the sums of normals, for steep highlights.

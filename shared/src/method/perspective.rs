@@ -39,6 +39,12 @@ pub(crate) struct Middles(pub(crate) Option<[u16; 3]>);
 impl Middles {
     /// The middles in space.
     pub(crate) const IN_SPACE: Self = Self(None);
+
+    /// The shares of the edges at which they lie, Q0.16.
+    #[inline(always)]
+    pub(crate) fn shares(self) -> [u16; 3] {
+        self.0.unwrap_or([1 << 15; 3])
+    }
 }
 
 /// The least of three inverse depths, and how much larger the largest is, in a common unit. The least one has 16 bits and is

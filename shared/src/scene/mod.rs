@@ -44,13 +44,15 @@ pub use outlines::Outlines;
 pub use pose::{MAX_SCALE, MIN_SCALE, Pose, QUATERNION_ERROR, STEP_ERROR};
 
 use crate::{
-    features::{ANIMATION, ANTIALIAS, COLOURS, Feature, OBJECTS},
+    features::{ANIMATION, ANTIALIAS, COLOURS, Feature, OBJECTS, VERTEX_COLOURS},
     format::{Gain, Length, MAX_LIGHTS, ROTATION},
     math::vector::dot,
     pixel::Channels,
     stream::{
         Stream, is_gain,
-        record::{Camera, LIGHT_TRACK, Light, Material, OBJECT_TRACK, OWN_MATERIALS, PERSPECTIVE, POINT, Track, VIEWER_LOCAL},
+        record::{
+            Camera, HAS_COLOURS, LIGHT_TRACK, Light, Material, Mesh, OBJECT_TRACK, OWN_MATERIALS, PERSPECTIVE, POINT, Track, VIEWER_LOCAL,
+        },
     },
 };
 use core::ops::Range;
@@ -299,7 +301,29 @@ impl<'a> Scene<'a> {
 
     fn rearrange(&mut self) {
         self.rearranged = true;
+        self.exchange_materials();
         self.set_view_changed();
+    }
+
+    /// Meshes with colours at their corners may have other materials, whose tables depend on it.
+    fn exchange_materials(&mut self) {
+        if VERTEX_COLOURS && !self.stream.corner_colours.is_empty() {
+            self.set_stale();
+        }
+    }
+
+    /// Whether a mesh with colours at its corners has the material with this index.
+    pub(crate) fn is_coloured(&self, material: usize) -> bool {
+        let meshes = |object: &Object| self.stream.meshes.get(usize::from(object.meshes().start)..usize::from(object.meshes().end));
+        let is_coloured = |object: &Object, mesh: &Mesh| mesh.flags & HAS_COLOURS != 0 && object.material_of(mesh) == material;
+        VERTEX_COLOURS
+            && !self.stream.corner_colours.is_empty()
+            && self.objects().iter().any(|object| meshes(object).unwrap_or_default().iter().any(|mesh| is_coloured(object, mesh)))
+    }
+
+    /// Whether the pixel format has greys.
+    pub(crate) fn is_gray(&self) -> bool {
+        self.channels.is_gray
     }
 
     /// Object `index`.
@@ -340,6 +364,7 @@ impl<'a> Scene<'a> {
             return Err(SceneError::Material { index: material.into() });
         }
         self.object(index)?.material = material;
+        self.exchange_materials();
         self.set_repainted();
         Ok(())
     }

@@ -3,7 +3,10 @@
 use super::costs::SAVINGS;
 use crate::{
     features::PERSPECTIVE,
-    lighting::reflectance::{FULL, LitMaterial},
+    lighting::{
+        albedo::{Albedo, SHARE},
+        reflectance::{FULL, LitMaterial},
+    },
     method::{
         CornerCosines, Shading, TriangleSetup,
         auto::error_bound::{Curvature, Interval, LinearBound},
@@ -96,7 +99,12 @@ fn curved<const QUADRATICS: bool>(setup: &TriangleSetup<'_>, shading: &Shading<'
     let keeps_quadratic = || is_quadratic(setup, shading, curvature, corners);
     match () {
         () if quadratic >= cosines && keeps_quadratic() => Choice::Quadratic,
-        () if cosines > 0 && shading.error_bounds.cosines(setup.triangle, curvature, corners) <= shading.budget => Choice::Cosines,
+        () if cosines > 0
+            && setup.albedos().is_none()
+            && shading.error_bounds.cosines(setup.triangle, curvature, corners) <= shading.budget =>
+        {
+            Choice::Cosines
+        }
         () if (1..cosines).contains(&quadratic) && keeps_quadratic() => Choice::Quadratic,
         () => Choice::Phong,
     }
@@ -106,7 +114,8 @@ fn curved<const QUADRATICS: bool>(setup: &TriangleSetup<'_>, shading: &Shading<'
 #[inline(never)]
 fn is_quadratic(setup: &TriangleSetup<'_>, shading: &Shading<'_>, curvature: Curvature, cosines: &[CornerCosines]) -> bool {
     let Shading { error_bounds: bounds, budget, reflectance, .. } = *shading;
-    bounds.quadratic(setup.triangle, curvature, cosines) <= budget
+    let of_colours = setup.albedos().map_or(0, |albedos| bounds.of_cubic(Albedo::range(albedos), curvature, cosines));
+    bounds.quadratic(setup.triangle, curvature, cosines) + of_colours <= budget
         && !(bounds.may_saturate() && bounds.saturates(curvature, cosines, reflectance))
 }
 
@@ -138,7 +147,7 @@ fn lit_range(cosines: &[i32; 3]) -> i32 {
 /// been clamped at 255.
 #[inline(always)]
 fn one_light(setup: &TriangleSetup<'_>, shading: &Shading<'_>, [towards, _]: &CornerCosines, bounds: LinearBound) -> Option<Choice> {
-    let ([a, b, c], LinearBound { interval, brightest, has_highlight }) = (setup.corners, bounds);
+    let ([a, b, c], LinearBound { mut interval, brightest, has_highlight }) = (setup.corners, bounds);
     let Shading { error_bounds: limits, budget, reflectance, .. } = *shading;
     let three = reflectance.three_channels();
     // The levels in one channel, the highlights in three.
@@ -150,7 +159,16 @@ fn one_light(setup: &TriangleSetup<'_>, shading: &Shading<'_>, [towards, _]: &Co
             return None;
         }
     }
-    let diffuse = limits.diffuse_level(0, lit_range(towards));
+    let mut diffuse = limits.diffuse_level(0, lit_range(towards));
+    if let Some(albedos) = setup.albedos() {
+        let range = Albedo::range(albedos);
+        interval = interval.widened(limits.of_product(range, diffuse));
+        if interval.half() > budget {
+            return None;
+        }
+        // The range of the product.
+        diffuse += (range * brightest.min(FULL as u32) >> SHARE) + 1;
+    }
     let range = || {
         let [least, most] = reflected();
         match (has_highlight, three) {

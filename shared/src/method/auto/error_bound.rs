@@ -17,7 +17,10 @@
 use crate::{
     arch::product::unsigned_product,
     format::{COSINE, HAVERSINE, NORMAL_LENGTH},
-    lighting::reflectance::{FULL, LitMaterial},
+    lighting::{
+        albedo::SHARE,
+        reflectance::{FULL, LitMaterial},
+    },
     method::{
         CornerCosines,
         auto::highlight_error::{self, TablePlace, USUAL_EXPONENT},
@@ -201,6 +204,12 @@ impl Interval {
         beyond(self.below) - beyond(self.above)
     }
 
+    /// The interval with this much more on both sides.
+    #[inline]
+    pub(crate) fn widened(self, by: u32) -> Self {
+        Self { below: self.below + by, above: self.above + by }
+    }
+
     #[inline]
     fn plus(self, other: Self) -> Self {
         Self { below: self.below + other.below, above: self.above + other.above }
@@ -298,6 +307,36 @@ impl ErrorBounds {
             bounds.brightest += place.brightest(light.specular);
             bounds.has_highlight = true;
         }
+    }
+
+    /// A bound of the difference between the product of two values that are linear over the triangle and what is interpolated linearly between the
+    /// products at the corners: a quarter of the product of their ranges. The colour of the surface, Q0.16, and the level of light, Q9.7, differ by
+    /// these ranges between the corners.
+    ///
+    /// Proof: at a point with the weights w of the corners the difference is the covariance of the two values at the corners, where these have the
+    /// probabilities w. It is at most the root of the product of their variances (Cauchy and Schwarz), and a variance at most a quarter of the squared
+    /// range (Popoviciu).
+    #[inline]
+    pub(crate) fn of_product(&self, colour: u32, level: u32) -> u32 {
+        ((colour * level.min(FULL as u32)) >> (SHARE + 2)) + 1
+    }
+
+    /// A bound of what the quadratic through six nodes is farther off where the colour of the surface differs by `range`, Q0.16, between corners: a
+    /// third of the range times the largest difference m of diffuse light from its linear interpolation at the middles of the edges.
+    ///
+    /// Proof: let b be the quadratic of light less its linear interpolation. It is the sum of 4 m u v over the edges, where u and v are the weights of
+    /// their ends. A quadratic is exact for a linear colour times linear light. For the colour c times b, it has at each edge the mean of the colours
+    /// at its ends in place of c. So it is off by at most 4 m times the sum of u v |c - mean|. That is convex in each colour at a corner, so it is
+    /// largest where one corner has a colour that differs from both others by the range. With the weight t of this corner, it is at most
+    /// 4 t (1 - t) |t - 1/2| + t (1 - t)², whose largest value is 0.329.
+    #[inline(never)]
+    pub(crate) fn of_cubic(&self, range: u32, curvature: Curvature, cosines: &[CornerCosines]) -> u32 {
+        let mut most = 2;
+        for (light, [towards, _]) in self.lights.iter().zip(cosines) {
+            let (Interval { below, above }, _) = light.diffuse(curvature, towards);
+            most += below.max(above);
+        }
+        (range * most.min(FULL as u32) >> SHARE) / 3 + 1
     }
 
     /// A bound of the quadratic through corners and midpoints of edges, in 1/255 of full intensity, Q9.7.
@@ -513,7 +552,7 @@ mod tests {
         let bright = [2 << UNIT; 3];
         let material = Material { ambient: bright, diffuse: bright, specular: bright, exponent: 1024 };
         let light = Light { colour: bright, ..Light::new_zeroed() };
-        reflectance.fill(Channels::of::<Gray8>(), bright, &material, &[light; 2], (Highlight::Half, false));
+        reflectance.fill(Channels::of::<Gray8>(), bright, &material, &[light; 2], (Highlight::Half, false), false);
         let reflectance = LitMaterial::new(&reflectance, None);
         let bounds = ErrorBounds::new(reflectance, 1024, 2);
         let one = (1 << COSINE) + (1 << (COSINE - UNIT));
@@ -545,7 +584,7 @@ mod tests {
             let material = Material { ambient: [0; 3], diffuse: gain(shares[0]), specular: gain(shares[1]), exponent };
             let mut reflectance = Reflectance::EMPTY;
             let white = Light { colour: [1 << UNIT; 3], ..Light::new_zeroed() };
-            reflectance.fill(Channels::of::<Gray8>(), [1 << UNIT; 3], &material, &[white; 2][..lights], (Highlight::Half, false));
+            reflectance.fill(Channels::of::<Gray8>(), [1 << UNIT; 3], &material, &[white; 2][..lights], (Highlight::Half, false), false);
             let reflectance = LitMaterial::new(&reflectance, None);
             let bounds = ErrorBounds::new(reflectance, exponent, lights);
             let (facing, spread) = (random.direction(), 0.6f64.powf(1.0 + 4.0 * random.next().abs()));

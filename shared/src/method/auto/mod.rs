@@ -20,6 +20,7 @@ pub mod highlight_error;
 use crate::{
     interpolate::{Constant, by_column::ByColumn},
     lighting::{
+        albedo::Albedo,
         material_tables::MaterialTables,
         reflectance::{FULL, LitMaterial},
     },
@@ -78,6 +79,10 @@ pub fn raises(choice: Choice, setup: &TriangleSetup<'_>, shading: &Shading<'_>) 
 #[inline(never)]
 fn middle(setup: &TriangleSetup<'_>, shading: &Shading<'_>, raises: [i32; 3]) -> [i32; 3] {
     let reflectance = shading.reflectance;
+    if let Some(albedos) = setup.albedos() {
+        let parts = reflectance.reflected_parts(half_way(setup, 0, 0), half_way(setup, 2, 0) as u32);
+        return zip(Albedo::half_way(albedos).lit(parts), raises, |level, raise| (level + raise).clamp(0, FULL));
+    }
     let levels = match (shading.vertices_have_cosines(), reflectance.three_channels()) {
         // Where one colour is chosen under two lights, no highlight can be seen.
         (false, _) => reflectance.two_lights([half_way(setup, 0, 0), i32::MIN, half_way(setup, 2, 0), i32::MIN]),
@@ -91,7 +96,7 @@ fn middle(setup: &TriangleSetup<'_>, shading: &Shading<'_>, raises: [i32; 3]) ->
 #[inline(never)]
 fn solid<C: Pixel>(setup: &TriangleSetup<'_>, shading: &Shading<'_>, raise: i32, tables: MaterialTables<'_, C>) -> [C::Stored; 2] {
     let reflectance = shading.reflectance;
-    if shading.vertices_have_cosines() {
+    if shading.vertices_have_cosines() && setup.albedos().is_none() {
         if !reflectance.three_channels() {
             return tables.tint(half_way(setup, 2, 0) + raise);
         }

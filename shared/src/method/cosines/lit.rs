@@ -3,7 +3,11 @@
 //! What a method does at a pixel is one [`AtPixel`], and one [`FromValues`] for a light with a highlight and one for a light without. All else is
 //! here: one light or two, and colours from a table or from sums.
 
-use crate::{lighting::constant_lights::Shades, pixel::by_rows::ByRows, raster::pixel_shader::PixelShader};
+use crate::{
+    lighting::constant_lights::{Coloured, Shades},
+    pixel::by_rows::ByRows,
+    raster::pixel_shader::PixelShader,
+};
 use core::marker::PhantomData;
 
 /// What a method computes at a pixel for all lights together, such as a reciprocal length.
@@ -34,6 +38,14 @@ pub(super) trait FromValues<M, V> {
 impl<M, A: FromValues<M, V>, B: FromValues<M, W>, V, W> FromValues<M, (V, W)> for (A, B) {
     fn from_values(common: &M, full: u16, (one, two): (V, W)) -> Self {
         (A::from_values(common, full, one), B::from_values(common, full, two))
+    }
+}
+
+/// Light on a surface whose colour is walked beside it.
+impl<M, L: FromValues<M, V>, V> FromValues<M, (V, [u32; 3])> for Coloured<L> {
+    #[inline(always)]
+    fn from_values(common: &M, full: u16, (values, colour): (V, [u32; 3])) -> Self {
+        Self(L::from_values(common, full, values), colour)
     }
 }
 

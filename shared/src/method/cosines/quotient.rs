@@ -3,6 +3,7 @@
 
 use crate::{
     arch::product::upper,
+    features::VERTEX_COLOURS,
     interpolate::{
         Constant,
         by_column::ByColumn,
@@ -11,12 +12,14 @@ use crate::{
         quadric::Quadric,
     },
     lighting::{
-        constant_lights::{DiffuseOnly, LitColours, OneLightRamp, OneLightRgb, Shades, WithHighlight, node},
+        albedo::{Albedo, SHARE},
+        constant_lights::{COLOUR, Coloured, DiffuseOnly, LitColours, OneLightRamp, OneLightRgb, Shades, WithHighlight, node},
         material_tables::MaterialTables,
+        reflectance::FULL,
     },
-    math::{highlight_lookup, highlight_lookup::QuotientLookup, highlight_lut::HighlightLut, rsqrt::HalfRsqrt},
+    math::{highlight_lookup, highlight_lookup::QuotientLookup, highlight_lut::HighlightLut, rsqrt::HalfRsqrt, vector::map},
     method::{
-        CornerCosines, TriangleSetup,
+        CornerCosines, LinearWay, TriangleSetup,
         cosines::{
             lit::{AtPixel, FromValues, LitShader},
             scale::Lengths,
@@ -132,6 +135,12 @@ pub(super) fn draw<C: Pixel>(
     band: &mut Band<'_, C>,
 ) -> Option<u32> {
     let (rgb, lut) = (tables.one_light_rgb(), tables.reflectance.table()?);
+    if VERTEX_COLOURS
+        && !C::GRAY
+        && let Some(albedos) = setup.albedos()
+    {
+        return draw_coloured(setup, cosines, lengths, albedos, tables, band);
+    }
     // Without a highlight three channels are drawn by a table of colours, which rounds otherwise: that is no matter of leaving it out.
     let has_no_highlight = match rgb {
         Some(_) => largest(&cosines[1]) < setup.highlight_threshold(tables.reflectance),
@@ -157,6 +166,47 @@ fn draw_rgb<C: Pixel>(
     band: &mut Band<'_, C>,
 ) -> u32 {
     draw_in(setup, cosines, lengths, colours, lut, band)
+}
+
+/// Draws as [`draw_in`] does, on a surface whose corners have colours.
+#[inline(never)]
+fn draw_coloured<C: Pixel>(
+    setup: &TriangleSetup<'_>,
+    cosines: &CornerCosines,
+    lengths: &Lengths,
+    albedos: &[Albedo; 3],
+    tables: MaterialTables<'_, C>,
+    band: &mut Band<'_, C>,
+) -> Option<u32> {
+    if !is_plane(setup, albedos) {
+        return None;
+    }
+    let colours = tables.coloured_rgb();
+    let (lookup, full) = (QuotientLookup::new(tables.reflectance.table()?), colours.diffuse());
+    if setup.leaves_out_highlight(tables.reflectance, &cosines[1]) {
+        setup.count(band.top, &mut band.counts.without_highlight, 1);
+        let patch = || ((plane(setup, full, lengths, &cosines[0]), colour(setup, albedos)), lengths.square(setup));
+        return Some(setup.fill(patch, LitShader::of::<Coloured<DiffuseOnly>>(colours, Quotient(HalfRsqrt::get())), band));
+    }
+    let patch = || {
+        let ((diffuse, highlight), square) = patch(setup, full, lookup, cosines, lengths);
+        (((diffuse, highlight), colour(setup, albedos)), square)
+    };
+    Some(setup.fill(patch, LitShader::of::<Coloured<WithHighlight>>(colours, QuotientWithHighlight(lookup, HalfRsqrt::get())), band))
+}
+
+/// Whether colours can be interpolated by a plane on the screen.
+#[inline(never)]
+pub(super) fn is_plane(setup: &TriangleSetup<'_>, albedos: &[Albedo; 3]) -> bool {
+    matches!(setup.linear_way(|| (Albedo::range(albedos) * FULL as u32) >> SHARE), LinearWay::Plane)
+}
+
+/// The colour of a surface whose corners have these colours, Q1.[`COLOUR`].
+#[inline(never)]
+pub(super) fn colour(setup: &TriangleSetup<'_>, albedos: &[Albedo; 3]) -> Plane<3> {
+    let [a, b, c] = map(*albedos, |albedo| map(albedo.shares(), |share| (share + 1) >> 1));
+    let nodes = [[a[0], b[0], c[0]], [a[1], b[1], c[1]], [a[2], b[2], c[2]]];
+    Nodes::<3, 3, 16>::new(nodes, COLOUR - 15).fit(setup.gradients)
 }
 
 /// Draws `setup` under two constant lights.

@@ -5,6 +5,7 @@
 
 use crate::{
     arch::product::upper,
+    features::VERTEX_COLOURS,
     format::{MAX_LIGHTS, NORMAL_LENGTH},
     interpolate::{
         Patch, Walker,
@@ -26,7 +27,7 @@ use crate::{
         Shading, TriangleSetup,
         cosines::{
             lit::{FromValues, LitShader},
-            quotient::{HalfReciprocal, LEVEL, NODE, PIXEL, Quotient, RANGE, numerator, plane},
+            quotient::{HalfReciprocal, LEVEL, NODE, PIXEL, Quotient, RANGE, colour, is_plane, numerator, plane},
             scale::Lengths,
         },
         largest,
@@ -50,6 +51,12 @@ impl Term {
     /// Adds a term of `numerator`; there is room for all.
     fn add(terms: &mut Terms, numerator: Plane<1>, factors: [i32; 3]) {
         let _ = terms.push(Self { numerator: Cell::new(numerator), factors });
+    }
+
+    /// Levels to which the term adds its factors times `value`.
+    #[inline(always)]
+    fn added(&self, levels: [i32; 3], value: i32) -> [i32; 3] {
+        zip(levels, self.factors, |level, factor| level.wrapping_add(factor.wrapping_mul(value)))
     }
 
     /// Moves the numerator down by `rows`.
@@ -76,6 +83,8 @@ struct SummedLights {
     ending: Terms,
     /// The highlights that can be seen there.
     highlights: Terms,
+    /// What the sums have of ambient light alone.
+    ambient: [i32; 3],
     /// Whether one of these highlights can be seen. They can unless leaving out is switched off.
     is_visible: bool,
     /// Numbers of lights that reach the triangle without a highlight, and of lights that do not reach it.
@@ -96,7 +105,9 @@ impl SummedLights {
         let [a, b, c] = setup.corners.map(|corner| corner.light);
         let sides = Sides::of_triangle([a[3], b[3], c[3]]);
         let is_long = setup.triangle.min_normal_length >= LEAST_LENGTH << (NORMAL_LENGTH - 4);
-        let mut lights = Self { corners: [[a[0], b[0], c[0]], [a[1], b[1], c[1]], [a[2], b[2], c[2]]], ..Self::default() };
+        let corners = [[a[0], b[0], c[0]], [a[1], b[1], c[1]], [a[2], b[2], c[2]]];
+        let ambient = if VERTEX_COLOURS && setup.albedos().is_some() { material.pure_ambient() } else { [0; 3] };
+        let mut lights = Self { corners, ambient, ..Self::default() };
         for (light, source) in shading.lighting.sources().iter().enumerate() {
             let Some(&[towards, half]) = source.directional() else { continue };
             let is_dark = sides.is_dark(light) && setup.leaves_out_light(material, &[0; 3]);
@@ -144,10 +155,13 @@ pub(super) fn draw<C: Pixel>(
     setup.count(band.top, &mut band.counts.without_highlight, without_highlight);
     setup.count(band.top, &mut band.counts.without_light, without_light);
     let patch = || (sums(setup, lengths, &lights.corners), lengths.square(setup));
+    let shader = OneByOne { colours, lookup, lengths: HalfRsqrt::get(), lights, row: setup.gradients.row() };
+    if VERTEX_COLOURS && let Some(albedos) = setup.albedos() {
+        return is_plane(setup, albedos).then(|| setup.fill(|| (Column, ByColumn((colour(setup, albedos), patch()))), shader, band));
+    }
     if lights.ending.is_empty() && lights.highlights.is_empty() {
         return Some(setup.fill(patch, LitShader::of::<Summed>(colours, Quotient(HalfRsqrt::get())), band));
     }
-    let shader = OneByOne { colours, lookup, lengths: HalfRsqrt::get(), lights, row: setup.gradients.row() };
     Some(setup.fill(|| (Column, ByColumn(patch())), shader, band))
 }
 
@@ -192,6 +206,27 @@ impl<C> OneByOne<'_, C> {
     }
 }
 
+impl<C: Pixel> OneByOne<'_, C> {
+    /// The levels of ambient and diffuse light at a pixel.
+    #[inline(always)]
+    fn diffuse(&self, column: i32, sums: [u32; 3], half_reciprocal: &HalfReciprocal) -> [i32; 3] {
+        let levels = self.colours.levels(Summed::from_values(half_reciprocal, 0, sums));
+        self.lights.ending.iter().fold(levels, |levels, term| {
+            let DiffuseOnly(level) = DiffuseOnly::from_values(half_reciprocal, 0, term.at(column));
+            term.added(levels, cosine(PIXEL, level))
+        })
+    }
+
+    /// These levels with the highlights at a pixel.
+    #[inline(always)]
+    fn with_highlights(&self, column: i32, levels: [i32; 3], half_reciprocal: &HalfReciprocal) -> [i32; 3] {
+        self.lights.highlights.iter().fold(levels, |levels, term| {
+            let [half] = term.at(column);
+            term.added(levels, self.lookup.at(upper(half as i32, half_reciprocal.0)) as i32)
+        })
+    }
+}
+
 impl<C: Pixel> ByRows for OneByOne<'_, C> {
     #[inline(always)]
     fn step_row(&mut self) {
@@ -211,19 +246,23 @@ impl<C: Pixel> PixelShader<Value> for OneByOne<'_, C> {
 
     #[inline(always)]
     fn shade(&self, (column, (sums, [square])): Value) -> C {
-        let Self { colours, lookup, lengths, lights, .. } = self;
-        let half_reciprocal = HalfReciprocal(lengths.rsqrt(square) as i32);
-        let mut levels = colours.levels(Summed::from_values(&half_reciprocal, 0, sums));
-        let mut add =
-            |term: &Term, value: i32| levels = zip(levels, term.factors, |level, factor| level.wrapping_add(factor.wrapping_mul(value)));
-        for term in &lights.ending {
-            let DiffuseOnly(level) = DiffuseOnly::from_values(&half_reciprocal, 0, term.at(column));
-            add(term, cosine(PIXEL, level));
-        }
-        for term in &lights.highlights {
-            let [half] = term.at(column);
-            add(term, lookup.at(upper(half as i32, half_reciprocal.0)) as i32);
-        }
-        colours.mixed(levels)
+        let half_reciprocal = HalfReciprocal(self.lengths.rsqrt(square) as i32);
+        let levels = self.diffuse(column, sums, &half_reciprocal);
+        self.colours.mixed(self.with_highlights(column, levels, &half_reciprocal))
+    }
+}
+
+/// The value at a pixel of a surface whose colour is walked: the column, the colour, and what follows in [`Value`].
+type ColouredValue = (i32, ([u32; 3], ([u32; 3], [u32; 1])));
+
+impl<C: Pixel> PixelShader<ColouredValue> for OneByOne<'_, C> {
+    type Pixel = C;
+
+    #[inline(always)]
+    fn shade(&self, (column, (colour, (sums, [square]))): ColouredValue) -> C {
+        let half_reciprocal = HalfReciprocal(self.lengths.rsqrt(square) as i32);
+        let levels = self.diffuse(column, sums, &half_reciprocal);
+        let painted = self.colours.painted(levels, self.lights.ambient, colour);
+        self.colours.mixed(self.with_highlights(column, painted, &half_reciprocal))
     }
 }

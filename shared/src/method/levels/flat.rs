@@ -31,7 +31,7 @@ impl Method for Flat {
     }
 
     fn shade(&self, setup: &TriangleSetup<'_>, shading: &Shading<'_>, canvas: &mut dyn Canvas) -> u32 {
-        draw_uniform(setup, levels(setup.triangle, setup.vertices, shading), canvas)
+        draw_uniform(setup, levels(setup, shading), canvas)
     }
 }
 
@@ -54,7 +54,7 @@ impl Loops for Flat {
                 let normal = wide(setup.triangle.normal);
                 tables.one_light([vertex_cosine(normal, towards), vertex_cosine(normal, half)])
             }
-            None => tables.colour(levels(setup.triangle, setup.vertices, shading)),
+            None => tables.colour(levels(setup, shading)),
         };
         Some(setup.fill(|| Constant, Solid::face(colour), band))
     }
@@ -62,12 +62,12 @@ impl Loops for Flat {
 
 /// Levels at the centroid with the plane's normal.
 #[inline(never)]
-fn levels(triangle: &Triangle, vertices: &[Vertex], shading: &Shading<'_>) -> [i32; 3] {
-    let normal = wide(triangle.normal);
+fn levels(setup: &TriangleSetup<'_>, shading: &Shading<'_>) -> [i32; 3] {
+    let (normal, albedo) = (wide(setup.triangle.normal), setup.colour_at([1; 3]));
     if shading.lighting.is_constant() {
-        return shading.reflectance.constant_levels(shading.lighting.sources(), &MeanNormal::at(normal));
+        return shading.constant_levels(&MeanNormal::at(normal), albedo);
     }
-    shading.levels(&centroid(triangle, vertices, normal))
+    shading.levels(&Node { albedo, ..centroid(setup.triangle, setup.vertices, normal) })
 }
 
 /// The triangle's centroid, and the `normal` of its plane (Q2.14).
@@ -75,5 +75,5 @@ fn centroid(triangle: &Triangle, vertices: &[Vertex], normal: [i32; 3]) -> Node 
     // A checked stream has all vertices.
     let [a, b, c] = triangle.corners.map(|corner| vertices.get(usize::from(corner)).unwrap_or(&Vertex::ZERO));
     let sum = add(point(a.position), add(point(b.position), point(c.position)));
-    Node { position: sum.map(|c| c / 3), normal: normal.map(|c| c << (30 - UNIT)) }
+    Node { position: sum.map(|c| c / 3), normal: normal.map(|c| c << (30 - UNIT)), albedo: Node::NO_COLOUR }
 }

@@ -6,7 +6,7 @@
 use crate::{
     interpolate::by_column::ByColumn,
     lighting::material_tables::MaterialTables,
-    method::{Facts, Loops, Method, RANGE, Shading, Style, TriangleSetup, VertexLight, node::map_six},
+    method::{Facts, Loops, Method, RANGE, Shading, Style, TriangleSetup, VertexLight, channels, node::map_six},
     pixel::Pixel,
     raster::{band::Band, canvas::Canvas},
 };
@@ -87,7 +87,7 @@ fn levels(setup: &TriangleSetup<'_>, shading: &Shading<'_>) -> [[i32; 6]; 3] {
     if shading.constant.is_none() {
         return lit(setup, shading);
     }
-    if !shading.reflectance.three_channels() {
+    if !shading.reflectance.three_channels() && setup.albedos().is_none() {
         return [one_level(setup, shading); 3];
     }
     three_levels(setup, shading)
@@ -97,6 +97,10 @@ fn levels(setup: &TriangleSetup<'_>, shading: &Shading<'_>) -> [[i32; 6]; 3] {
 #[inline(never)]
 fn three_levels(setup: &TriangleSetup<'_>, shading: &Shading<'_>) -> [[i32; 6]; 3] {
     let (cosines, highlights) = reflected(setup, shading);
+    if let Some(colours) = setup.six_colours() {
+        let lit = |k: usize| colours[k].lit(shading.reflectance.reflected_parts(cosines[k], highlights[k]));
+        return channels([lit(0), lit(1), lit(2), lit(3), lit(4), lit(5)]);
+    }
     let level = |channel| shading.reflectance.six(channel, cosines, highlights);
     [level(0), level(1), level(2)]
 }

@@ -1,0 +1,146 @@
+//! Colours at the corners of triangles, by which ambient and diffuse light are multiplied.
+//!
+//! The level of a node is its colour times what the material reflects of ambient and diffuse light, plus its highlights. So methods that interpolate
+//! levels need nothing else. Methods that compute light at each pixel interpolate the colour linearly beside it.
+//!
+//! Error: levels are rounded to the nearest; white changes none.
+
+use crate::{
+    features::COLOURED,
+    format::LEVEL,
+    lighting::reflectance::FULL,
+    math::vector::{map, zip},
+    stream::record::Colour,
+};
+use core::num::NonZeroU32;
+
+/// A value for a mesh with colours at its corners: there is room for none in a program without the feature.
+pub(crate) type IfColoured<T> = [T; COLOURED];
+
+/// The colour of a surface at a point: shares of red, green and blue light, unsigned Q0.16 with 65,535 for all of it.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub struct Albedo([u16; 3]);
+
+/// The levels of ambient and diffuse light, Q9.7 in [0, 512), and those of highlights, which no colour changes.
+#[derive(Clone, Copy, Debug)]
+pub struct Parts {
+    /// Ambient and diffuse light.
+    pub(crate) diffuse: [i32; 3],
+    /// Highlights.
+    pub(crate) specular: [i32; 3],
+}
+
+/// Bits of a share.
+pub(crate) const SHARE: u32 = 16;
+/// Largest level of a part.
+const MOST: i32 = (1 << (LEVEL + 9)) - 1;
+
+impl Albedo {
+    /// A colour of a palette. In greys all shares are that of its luma, by the weights of Rec. 601.
+    #[inline]
+    pub(crate) fn new(Colour { channels: [r, g, b], .. }: Colour, is_gray: bool) -> Self {
+        let [r, g, b] = [r, g, b].map(u32::from);
+        // From 255 to 65,535.
+        let share = |c: u32| (c * 257) as u16;
+        Self(if is_gray { [((r * 77 + g * 150 + b * 29) * 257 >> 8) as u16; 3] } else { [share(r), share(g), share(b)] })
+    }
+
+    /// The colour of these shares, which lie in [0, 65,535].
+    #[inline]
+    pub(crate) fn of_shares(shares: [i32; 3]) -> Self {
+        Self(map(shares, |share| share as u16))
+    }
+
+    /// The shares of the three channels.
+    #[inline]
+    pub(crate) fn shares(self) -> [i32; 3] {
+        map(self.0, i32::from)
+    }
+
+    /// The colour on the way from `self` to `other`, at a share of it in Q0.16.
+    #[inline]
+    pub(crate) fn towards(self, other: Self, share: u16) -> Self {
+        let (from, to) = (65_536 - u32::from(share), u32::from(share));
+        Self(zip(self.0, other.0, |a, b| ((u32::from(a) * from + u32::from(b) * to) >> 16) as u16))
+    }
+
+    /// The mean of three colours with these weights, whose sum is at most 65,536.
+    #[inline]
+    pub(crate) fn mean(&[Self(a), Self(b), Self(c)]: &[Self; 3], [u, v, w]: [u32; 3]) -> Self {
+        let sum = NonZeroU32::new(u + v + w).unwrap_or(NonZeroU32::MIN);
+        let (weighted, pair) = (|share: u16, weight: u32| u32::from(share) * weight, |a: u16, b: u16| (a, b));
+        Self(zip(zip(a, b, pair), c, |(a, b), c| ((weighted(a, u) + weighted(b, v) + weighted(c, w)) / sum) as u16))
+    }
+
+    /// The least and the largest share of a channel at three corners.
+    #[inline]
+    fn extremes(&[Self(a), Self(b), Self(c)]: &[Self; 3]) -> [(u16, u16); 3] {
+        zip(zip(a, b, |a, b| (a.min(b), a.max(b))), c, |(least, most), c| (least.min(c), most.max(c)))
+    }
+
+    /// The largest difference of a channel between three corners.
+    #[inline]
+    pub(crate) fn range(corners: &[Self; 3]) -> u32 {
+        let [r, g, b] = map(Self::extremes(corners), |(least, most)| u32::from(most - least));
+        r.max(g).max(b)
+    }
+
+    /// The colour whose channels lie half-way between the extremes at three corners.
+    #[inline]
+    pub(crate) fn half_way(corners: &[Self; 3]) -> Self {
+        Self(map(Self::extremes(corners), |(least, most)| least + ((most - least) >> 1)))
+    }
+
+    /// The levels of a surface of this colour, Q9.7 in [0, 255].
+    #[inline]
+    pub(crate) fn lit(self, Parts { diffuse, specular }: Parts) -> [i32; 3] {
+        let reflected = zip(diffuse, self.0, |level, share| (level as u32 * u32::from(share) + (1 << (SHARE - 1))) >> SHARE);
+        zip(reflected, specular, |reflected, specular| (reflected as i32 + specular).min(FULL))
+    }
+}
+
+impl Parts {
+    /// The parts as a vertex holds them.
+    #[inline]
+    pub(crate) fn packed(self) -> [i32; 4] {
+        let [r, g, b] = zip(self.diffuse, self.specular, |diffuse, specular| diffuse.min(MOST) | specular.min(MOST) << SHARE);
+        [r, g, b, 0]
+    }
+
+    /// The parts of a vertex that holds them.
+    #[inline]
+    pub(crate) fn of_vertex([r, g, b, _]: [i32; 4]) -> Self {
+        let packed = [r, g, b];
+        Self { diffuse: map(packed, |both| both & MOST), specular: map(packed, |both| (both as u32 >> SHARE) as i32) }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use proptest::prelude::*;
+
+    const WHITE: Colour = Colour { channels: [255; 3], unused: 0 };
+
+    proptest! {
+        #[test]
+        fn levels_are_the_nearest(levels in prop::array::uniform3(0..=FULL), specular in prop::array::uniform3(0..=FULL), channels in prop::array::uniform3(0u8..)) {
+            let parts = Parts::of_vertex(Parts { diffuse: levels, specular }.packed());
+            prop_assert_eq!((parts.diffuse, parts.specular), (levels, specular));
+            let white = Albedo::new(WHITE, false).lit(parts);
+            prop_assert_eq!(white, zip(levels, specular, |a, b| (a + b).min(FULL)));
+            let lit = Albedo::new(Colour { channels, unused: 0 }, false).lit(parts);
+            for k in 0..3 {
+                let exact = f64::from(levels[k]) * f64::from(channels[k]) / 255.0 + f64::from(specular[k]);
+                prop_assert!((f64::from(lit[k]) - exact.min(f64::from(FULL))).abs() <= 1.0);
+            }
+        }
+    }
+
+    #[test]
+    fn greys_have_the_luma_of_a_colour() {
+        let gray = |channels| Albedo::new(Colour { channels, unused: 0 }, true).shares();
+        assert_eq!(gray([255; 3]), [65_535; 3]);
+        assert_eq!(gray([255, 0, 0]), [77 * 255 * 257 >> 8; 3]);
+    }
+}

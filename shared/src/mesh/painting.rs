@@ -1,0 +1,67 @@
+//! The colours at the corners of the triangles of one mesh.
+
+use crate::{
+    features::COLOURED,
+    geometry::projection::ScreenVertex,
+    lighting::albedo::{Albedo, IfColoured, Parts},
+    math::vector::zip,
+    raster::triangle::turn,
+    stream::{MeshColours, Stream, record::Mesh},
+};
+use core::array::from_fn;
+
+/// The colours of a mesh, if it has any.
+#[derive(Clone, Copy)]
+pub(crate) struct Painting<'f>(IfColoured<Option<(MeshColours<'f>, bool)>>);
+
+/// The colours at the corners of a triangle, if it has any.
+pub(crate) type Corners = IfColoured<Option<[Albedo; 3]>>;
+
+impl<'f> Painting<'f> {
+    /// The colours of `mesh`. Pixel formats of greys take their luma.
+    pub(crate) fn of(stream: &Stream<'f>, mesh: &Mesh, is_gray: bool) -> Self {
+        Self([(); COLOURED].map(|()| stream.colours_of(mesh).map(|colours| (colours, is_gray))))
+    }
+
+    /// The colours at the corners of a triangle, clockwise on the screen, which is against the order of the stream.
+    #[inline(always)]
+    pub(super) fn corners(&self, triangle: usize) -> Corners {
+        self.0.map(|colours| {
+            let (MeshColours { palette, corners }, is_gray) = colours?;
+            let [a, c, b] = corners.get(triangle)?.colours;
+            let albedo = |index: u8| palette.get(usize::from(index)).map(|&colour| Albedo::new(colour, is_gray));
+            Some([albedo(a)?, albedo(b)?, albedo(c)?])
+        })
+    }
+}
+
+/// Colours in the order of corners that are turned by `by`.
+#[inline(always)]
+pub(super) fn turned(corners: Corners, by: usize) -> Corners {
+    corners.map(|albedos| albedos.map(|albedos| turn(albedos, by)))
+}
+
+/// Copies of corners that hold levels of light in place of [`Parts`].
+#[inline(never)]
+pub(super) fn painted([a, b, c]: [&ScreenVertex; 3], albedos: &[Albedo; 3]) -> [ScreenVertex; 3] {
+    zip([*a, *b, *c], *albedos, |corner, albedo| {
+        let [r, g, b] = albedo.lit(Parts::of_vertex(corner.light));
+        ScreenVertex { light: [r, g, b, 0], ..corner }
+    })
+}
+
+/// The shares of each channel at the corners; black if they have no colours.
+pub(super) fn shares(corners: &Corners) -> IfColoured<[[i32; 3]; 3]> {
+    corners.map(|albedos| albedos.map_or([[0; 3]; 3], |albedos| albedos.map(Albedo::shares)))
+}
+
+/// The colours of these shares, if the triangle has `corners` with colours.
+pub(super) fn of_shares(corners: &Corners, [a, b, c]: [IfColoured<[i32; 3]>; 3]) -> Corners {
+    from_fn(|k| corners[k].map(|_| [a[k], b[k], c[k]].map(Albedo::of_shares)))
+}
+
+/// References to what may be there.
+#[inline(always)]
+pub(super) fn lent(corners: &Corners) -> IfColoured<Option<&[Albedo; 3]>> {
+    corners.each_ref().map(Option::as_ref)
+}
