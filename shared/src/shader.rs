@@ -13,6 +13,7 @@ use crate::{
     },
     pixel::Pixel,
     raster::{band::Band, canvas::Canvas},
+    stream::record::Triangle,
 };
 use core::fmt;
 
@@ -38,8 +39,8 @@ type Run<C> = fn(&Drawing<'_, C>, TriangleKey, &mut Walk<'_>, &mut Band<'_, C>) 
 pub(crate) struct TriangleLoops<C: Pixel> {
     /// Draws the triangles of a mesh that lie in a band.
     pub(crate) run: Run<C>,
-    /// Draws one triangle, by its index in the mesh.
-    pub(crate) draw: fn(&Drawing<'_, C>, usize, &mut Band<'_, C>) -> u32,
+    /// Draws one triangle.
+    pub(crate) draw: fn(&Drawing<'_, C>, &Triangle, &mut Band<'_, C>) -> u32,
 }
 
 /// A method whose loops draw everything: a program that has no other pointer to it contains no general loop of it.
@@ -67,7 +68,7 @@ impl<C: Pixel> TriangleLoops<C> {
     const fn of<L: Loops, const THREE: bool>() -> Self {
         Self {
             run: |drawing, entry, walk, band| drawing.run::<L, THREE>(entry, walk, band),
-            draw: |drawing, index, band| drawing.draw::<L, THREE>(index, band),
+            draw: |drawing, triangle, band| drawing.draw::<L, THREE>(triangle, band),
         }
     }
 }

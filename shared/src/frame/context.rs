@@ -2,7 +2,7 @@
 
 use crate::{
     edges::{Edge, find::Outlined},
-    features::{ANTIALIAS, OBJECTS, REDRAW, VERTEX_COLOURS},
+    features::{ANTIALIAS, COLOURED, OBJECTS, REDRAW},
     frame::skips::Skips,
     geometry::{
         depth_elision::DepthElision,
@@ -196,8 +196,8 @@ impl<'r> Context<'r> {
         let light = self.settings.method.facts().vertex_light;
         let reflectance = self.material(placed.material)?;
         let Placement { view, lighting, .. } = placed.placement;
-        let is_coloured = VERTEX_COLOURS && placed.mesh.flags & HAS_COLOURS != 0;
-        let mut stage = VertexStage { view, lighting, constant: lighting.constant(), reflectance, light, is_coloured };
+        let has_colours = [placed.mesh.flags & HAS_COLOURS != 0; COLOURED];
+        let mut stage = VertexStage { view, lighting, constant: lighting.constant(), reflectance, light, has_colours };
         if stage.holds_parts() {
             stage.constant = None;
         }

@@ -452,16 +452,13 @@ fn draw_all<C: Pixel>(context: &Context<'_>, colours: &Colours<'_, C>, columns: 
     let (mut pixels, mut drawn) = (0u32, 0);
     for placed in context.meshes() {
         let Some((drawing, loops)) = colours.drawing(context, &placed, columns) else { continue };
-        for (index, triangle) in drawing.pass.triangles.iter().enumerate() {
-            if !placed.placement.facing.may_face(triangle) {
-                continue;
-            }
+        for triangle in drawing.pass.triangles.iter().filter(|triangle| placed.placement.facing.may_face(triangle)) {
             let Some(bounds) = drawing.pass.bounds(triangle) else { continue };
             // A triangle is counted in the band where it starts.
             let bottom = band.top + band.rows;
             drawn += u32::from((band.top..bottom).contains(&bounds.top));
             if bounds.bottom > band.top && bounds.top < bottom {
-                pixels = pixels.saturating_add((loops.draw)(&drawing, index, band));
+                pixels = pixels.saturating_add((loops.draw)(&drawing, triangle, band));
             }
         }
     }

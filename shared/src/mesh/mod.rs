@@ -48,10 +48,10 @@ impl<C: Pixel> Drawing<'_, C> {
             three_channels: reflectance.three_channels(),
             lights: if lighting.is_constant() { reflectance.lights() } else { 0 },
             // Boards with displays of greys have little flash: no loops there.
-            one_near: !C::GRAY && lighting.has_one_near() && reflectance.lights() == 1 && !self.pass.stage.is_coloured,
+            one_near: !C::GRAY && lighting.has_one_near() && reflectance.lights() == 1 && !self.pass.stage.is_coloured(),
             by_canvas: !self.colourist().suits_loops(),
             perspective: *perspective,
-            is_coloured: self.pass.stage.is_coloured,
+            is_coloured: self.pass.stage.is_coloured(),
         }
     }
 
@@ -67,14 +67,13 @@ impl<C: Pixel> Drawing<'_, C> {
         let mut pixels = 0u32;
         loop {
             // The mesh has every triangle of its entries.
-            let index = self.pass.index(key);
-            if let Some(triangle) = self.pass.triangles.get(index) {
+            if let Some(triangle) = self.pass.triangles.get(self.pass.index(key)) {
                 let drawn = if L::GENERAL || !key.is_word_sized() {
-                    self.draw::<L, THREE>(index, band)
+                    self.draw::<L, THREE>(triangle, band)
                 } else {
                     // A triangle that the loops decline is set up anew: if its set-up were passed on, that of all triangles would be kept
                     // in memory.
-                    self.draw_word_sized::<L, THREE>(triangle, key, band).unwrap_or_else(|| self.draw_declined::<L>(index, band))
+                    self.draw_word_sized::<L, THREE>(triangle, key.word(), band).unwrap_or_else(|| self.draw_declined::<L>(triangle, band))
                 };
                 pixels = pixels.saturating_add(drawn);
             }
@@ -86,21 +85,25 @@ impl<C: Pixel> Drawing<'_, C> {
     }
 
     /// Draws a triangle of any size, by the loops `L` if possible. Returns the number of its pixels in `band`.
-    pub(crate) fn draw<L: Loops, const THREE: bool>(&self, index: usize, band: &mut Band<'_, C>) -> u32 {
+    pub(crate) fn draw<L: Loops, const THREE: bool>(&self, triangle: &Triangle, band: &mut Band<'_, C>) -> u32 {
         let loops: DrawTriangle<C> = L::draw::<C, THREE>;
-        if const { needs_general::<L, C>() } { self.draw_by::<true>(loops, index, band) } else { self.draw_by::<false>(loops, index, band) }
+        if const { needs_general::<L, C>() } {
+            self.draw_by::<true>(loops, triangle, band)
+        } else {
+            self.draw_by::<false>(loops, triangle, band)
+        }
     }
 
     /// Draws a triangle that the loops `L` cannot draw.
-    fn draw_declined<L: Loops>(&self, index: usize, band: &mut Band<'_, C>) -> u32 {
-        if const { needs_general::<L, C>() } { self.draw_by::<true>(General::draw::<C, false>, index, band) } else { 0 }
+    fn draw_declined<L: Loops>(&self, triangle: &Triangle, band: &mut Band<'_, C>) -> u32 {
+        if const { needs_general::<L, C>() } { self.draw_by::<true>(General::draw::<C, false>, triangle, band) } else { 0 }
     }
 
     /// Draws a triangle of any size, by `loops` if possible, and otherwise by the general loop if the program has one.
     #[inline(never)]
-    fn draw_by<const GENERAL: bool>(&self, loops: DrawTriangle<C>, index: usize, band: &mut Band<'_, C>) -> u32 {
+    fn draw_by<const GENERAL: bool>(&self, loops: DrawTriangle<C>, triangle: &Triangle, band: &mut Band<'_, C>) -> u32 {
         let (width, rows) = (band.width as i32, band.range());
-        self.pass.set_up(index, width, rows, &mut |setup| {
+        self.pass.set_up(triangle, width, rows, &mut |setup| {
             let drawn = loops(setup, &self.pass.shading, self.tables(), band);
             drawn.unwrap_or_else(|| if GENERAL { self.shade_generally(setup, band) } else { 0 })
         })
@@ -117,14 +120,11 @@ impl<C: Pixel> Drawing<'_, C> {
     // Instructions of Armv6-M reach little of a large stack frame, so this is a call there.
     #[cfg_attr(all(target_arch = "arm", not(target_has_atomic = "32")), inline(never))]
     #[cfg_attr(not(all(target_arch = "arm", not(target_has_atomic = "32"))), inline(always))]
-    fn draw_word_sized<L: Loops, const THREE: bool>(&self, triangle: &Triangle, key: TriangleKey, band: &mut Band<'_, C>) -> Option<u32> {
-        let (by, mut corners) = turned(self.pass.corners(triangle)?);
-        let albedos = painting::turned(self.pass.corner_colours(key), by);
+    fn draw_word_sized<L: Loops, const THREE: bool>(&self, triangle: &Triangle, key: u32, band: &mut Band<'_, C>) -> Option<u32> {
+        let (by, corners) = turned(self.pass.corners(triangle)?);
+        let albedos = painting::turned(self.pass.corner_colours(triangle), by);
         let painted = self.pass.painted(corners, &albedos);
-        if let Some([a, b, c]) = painted.first().and_then(Option::as_ref) {
-            corners = [a, b, c];
-        }
-        let key = key.word();
+        let corners = painting::or_painted(corners, &painted);
         let place = band.active.take(key);
         let (screen, gradients, needs_depth_test);
         // Decision: continued.

@@ -23,12 +23,12 @@ impl<'f> Painting<'f> {
         Self([(); COLOURED].map(|()| stream.colours_of(mesh).map(|colours| (colours, is_gray))))
     }
 
-    /// The colours at the corners of a triangle, clockwise on the screen, which is against the order of the stream.
+    /// The colours at the corners of the triangle of this index, clockwise on the screen, which is against the order of the stream.
     #[inline(always)]
-    pub(super) fn corners(&self, triangle: usize) -> Corners {
+    pub(super) fn corners(&self, triangle: impl Fn() -> Option<usize>) -> Corners {
         self.0.map(|colours| {
             let (MeshColours { palette, corners }, is_gray) = colours?;
-            let [a, c, b] = corners.get(triangle)?.colours;
+            let [a, c, b] = corners.get(triangle()?)?.colours;
             let albedo = |index: u8| palette.get(usize::from(index)).map(|&colour| Albedo::new(colour, is_gray));
             Some([albedo(a)?, albedo(b)?, albedo(c)?])
         })
@@ -48,6 +48,15 @@ pub(super) fn painted([a, b, c]: [&ScreenVertex; 3], albedos: &[Albedo; 3]) -> [
         let [r, g, b] = albedo.lit(Parts::of_vertex(corner.light));
         ScreenVertex { light: [r, g, b, 0], ..corner }
     })
+}
+
+/// The corners, or their painted copies if there are any.
+#[inline(always)]
+pub(super) fn or_painted<'a>(corners: [&'a ScreenVertex; 3], painted: &'a IfColoured<Option<[ScreenVertex; 3]>>) -> [&'a ScreenVertex; 3] {
+    match painted.first() {
+        Some(Some(painted)) => painted.each_ref(),
+        _ => corners,
+    }
 }
 
 /// The shares of each channel at the corners; black if they have no colours.

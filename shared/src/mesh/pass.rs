@@ -75,10 +75,10 @@ impl MeshPass<'_> {
         key.triangle().wrapping_sub(self.first_triangle) as usize
     }
 
-    /// The colours at the corners of a triangle.
+    /// The colours at the corners of a triangle of the mesh.
     #[inline(always)]
-    pub(super) fn corner_colours(&self, key: TriangleKey) -> Corners {
-        self.painting.corners(self.index(key))
+    pub(super) fn corner_colours(&self, triangle: &Triangle) -> Corners {
+        self.painting.corners(|| self.triangles.element_offset(triangle))
     }
 
     /// The cached corners on the screen; `None` if one is not cached.
@@ -114,11 +114,9 @@ impl MeshPass<'_> {
 
     /// Sets up a triangle of any size, in parts where it is clipped, and calls `draw` for each part, which returns the number of its
     /// pixels. The band is `width` pixels wide, and `rows` are its first row and one past its last. Returns the sum.
-    pub(super) fn set_up(&self, index: usize, width: i32, rows: [i32; 2], draw: &mut dyn FnMut(&TriangleSetup<'_>) -> u32) -> u32 {
+    pub(super) fn set_up(&self, triangle: &Triangle, width: i32, rows: [i32; 2], draw: &mut dyn FnMut(&TriangleSetup<'_>) -> u32) -> u32 {
         let target = &mut Target { width, rows, draw };
-        // The mesh has every triangle of its entries.
-        let Some(triangle) = self.triangles.get(index) else { return 0 };
-        let albedos = self.painting.corners(index);
+        let albedos = self.corner_colours(triangle);
         match self.corners(triangle).filter(is_ready) {
             Some(corners) => self.set_up_placed(&MeshTriangle { corners, triangle, vertices: self.vertices, albedos }, target),
             None => self.transform_anew(triangle, albedos, target),
@@ -171,14 +169,12 @@ impl MeshPass<'_> {
             return 0;
         }
         let albedos = painting::turned(placed.albedos, screen.turned);
-        let (mut corners, painted) = (turn(placed.corners, screen.turned), self.painted(turn(placed.corners, screen.turned), &albedos));
-        if let Some([a, b, c]) = painted.first().and_then(Option::as_ref) {
-            corners = [a, b, c];
-        }
+        let corners = turn(placed.corners, screen.turned);
+        let painted = self.painted(corners, &albedos);
         let setup = TriangleSetup {
             screen: &screen,
             gradients: &gradients,
-            corners,
+            corners: painting::or_painted(corners, &painted),
             albedos: painting::lent(&albedos),
             turned: screen.turned,
             triangle: placed.triangle,

@@ -1,13 +1,14 @@
 //! The vertices of one mesh, transformed to the screen and lit.
 
 use crate::{
-    features::{ALWAYS_CONSTANT, VERTEX_COLOURS},
+    features::ALWAYS_CONSTANT,
     format::UNIT,
     geometry::{
         projection::{ScreenVertex, State, View},
         viewport::{Bounds, Viewport},
     },
     lighting::{
+        albedo::IfColoured,
         lights::{Lighting, MeanNormal, point, vertex_cosine},
         reflectance::LitMaterial,
         summed,
@@ -36,14 +37,20 @@ pub(crate) struct VertexStage<'f> {
     /// The light that the method needs at vertices.
     pub(crate) light: VertexLight,
     /// Whether corners of triangles have colours.
-    pub(crate) is_coloured: bool,
+    pub(crate) has_colours: IfColoured<bool>,
 }
 
 impl VertexStage<'_> {
+    /// Whether corners of triangles have colours.
+    #[inline(always)]
+    pub(crate) fn is_coloured(&self) -> bool {
+        self.has_colours.first().is_some_and(|&has_colours| has_colours)
+    }
+
     /// Whether vertices hold [`Parts`](crate::lighting::albedo::Parts) in place of levels, because the corners of triangles have colours.
     #[inline(always)]
     pub(crate) fn holds_parts(&self) -> bool {
-        VERTEX_COLOURS && self.is_coloured && !matches!(self.light, VertexLight::Cosines | VertexLight::CosinesAndReflection)
+        self.is_coloured() && !matches!(self.light, VertexLight::Cosines | VertexLight::CosinesAndReflection)
     }
 
     /// The corners `[x, y]` on the screen, clockwise, which is against the order of the stream; `None` if one is not cached or needs
@@ -176,9 +183,7 @@ impl VertexStage<'_> {
         match light {
             VertexLight::Cosines | VertexLight::CosinesOrLevels => [towards, half, 0, 0],
             VertexLight::Levels => [self.reflectance.level([towards, half]); 4],
-            _ if self.reflectance.three_channels() || VERTEX_COLOURS && self.is_coloured => {
-                [towards, half, self.reflectance.highlight(half) as i32, 0]
-            }
+            _ if self.reflectance.three_channels() || self.is_coloured() => [towards, half, self.reflectance.highlight(half) as i32, 0],
             _ => [towards, half, self.reflectance.level([towards, half]), 0],
         }
     }

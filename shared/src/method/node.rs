@@ -2,7 +2,7 @@
 
 use crate::{
     arch::product::{by_fraction, product},
-    features::{COLOURED, PERSPECTIVE},
+    features::{COLOURED, PERSPECTIVE, VERTEX_COLOURS},
     format::{COSINE, INVERSE_SUM_LENGTH, POSITION, UNIT},
     lighting::{
         albedo::{Albedo, IfColoured},
@@ -104,21 +104,21 @@ impl Shading<'_> {
 impl TriangleSetup<'_> {
     /// Returns position and unit normal of each corner in object space, for [`Shading::levels`].
     pub fn corner_nodes(&self) -> [Node; 3] {
-        let [x, y, z] = self.corner_colours();
-        let [a, b, c] = self.vertices();
-        let node =
-            |vertex: &Vertex, albedo| Node { position: point(vertex.position), normal: wide(vertex.normal).map(|c| c << FINER), albedo };
-        [node(a, x), node(b, y), node(c, z)]
+        self.painted(self.vertices().map(|vertex| Node {
+            position: point(vertex.position),
+            normal: wide(vertex.normal).map(|c| c << FINER),
+            albedo: Node::NO_COLOUR,
+        }))
     }
 
     /// Returns position and unit normal, in object space, of the three corners and then of the midpoints of the edges 0-1, 1-2 and 2-0.
     /// `exponent` is the material's, which decides how exactly the normals are computed.
     pub fn six_nodes(&self, exponent: u16) -> [Node; 6] {
-        let (sums, albedos) = (self.sums(), self.middle_colours([1 << 15; 3]));
+        let sums = self.sums();
         let [a, b, c] = self.corner_nodes();
         if is_steep(exponent) {
-            let [ab, bc, ca] = zip(sums, albedos, |(position, sum), albedo| Node { position, normal: normalise(sum), albedo });
-            return [a, b, c, ab, bc, ca];
+            let [ab, bc, ca] = sums.map(|(position, sum)| Node { position, normal: normalise(sum), albedo: Node::NO_COLOUR });
+            return self.painted([a, b, c, ab, bc, ca]);
         }
         let inverses = self.inverse_sum_lengths();
         let middle = |k: usize| {
@@ -126,9 +126,9 @@ impl TriangleSetup<'_> {
             let inverse = inverses[k] as i32;
             // Q3.14 times Q1.17: one bit more than wanted.
             let normal = sum.map(|c| (product(c, inverse) >> (UNIT + INVERSE_SUM_LENGTH - 30)) as i32);
-            Node { position, normal, albedo: albedos[k] }
+            Node { position, normal, albedo: Node::NO_COLOUR }
         };
-        [a, b, c, middle(0), middle(1), middle(2)]
+        self.painted([a, b, c, middle(0), middle(1), middle(2)])
     }
 
     /// [`Self::six_nodes`] with the nodes `middles`.
@@ -138,23 +138,29 @@ impl TriangleSetup<'_> {
         [a, b, c, ab, bc, ca]
     }
 
-    /// The colours of the corners, if they have any.
-    fn corner_colours(&self) -> [IfColoured<Option<Albedo>>; 3] {
-        [0, 1, 2].map(|k| self.albedos.map(|albedos| albedos.and_then(|albedos| albedos.get(k).copied())))
+    /// These nodes, which are the corners and then the middles of the edges, with the colours of the triangle.
+    #[inline(always)]
+    fn painted<const N: usize>(&self, mut nodes: [Node; N]) -> [Node; N] {
+        if let Some(colours) = self.six_colours_at([1 << 15; 3]) {
+            nodes.iter_mut().zip(colours).for_each(|(node, colour)| node.albedo = [Some(colour); COLOURED]);
+        }
+        nodes
     }
 
     /// The colours at these shares of the edges 0-1, 1-2 and 2-0, if the corners have any.
-    pub(crate) fn middle_colours(&self, [ab, bc, ca]: [u16; 3]) -> [IfColoured<Option<Albedo>>; 3] {
-        let between = |albedos: &[Albedo; 3]| {
-            let [a, b, c] = *albedos;
-            [a.towards(b, ab), b.towards(c, bc), c.towards(a, ca)]
-        };
-        [0, 1, 2].map(|k| self.albedos.map(|albedos| albedos.and_then(|albedos| between(albedos).get(k).copied())))
+    pub(crate) fn middle_colours(&self, shares: [u16; 3]) -> [IfColoured<Option<Albedo>>; 3] {
+        let colours = self.six_colours_at(shares);
+        [3, 4, 5].map(|k| [colours.and_then(|colours| colours.get(k).copied()); COLOURED])
     }
 
     /// The colours at the corners and the [`Middles`], if the corners have any.
     pub(crate) fn six_colours(&self) -> Option<[Albedo; 6]> {
-        let ([ab, bc, ca], [a, b, c]) = (self.middles().shares(), *self.albedos()?);
+        self.six_colours_at(self.middles().shares())
+    }
+
+    /// The colours at the corners and at these shares of the edges 0-1, 1-2 and 2-0, if the corners have any.
+    fn six_colours_at(&self, [ab, bc, ca]: [u16; 3]) -> Option<[Albedo; 6]> {
+        let [a, b, c] = *self.albedos()?;
         Some([a, b, c, a.towards(b, ab), b.towards(c, bc), c.towards(a, ca)])
     }
 
@@ -360,13 +366,17 @@ fn seen_normals([a, b, c]: [&Vertex; 3], [ab, bc, ca]: [u16; 3]) -> [[i32; 3]; 3
 /// The points at these shares of the edges, with their unit normals.
 #[inline(never)]
 fn seen_nodes(setup: &TriangleSetup<'_>, shares: [u16; 3]) -> [Node; 3] {
-    let (vertices, albedos) = (setup.vertices(), setup.middle_colours(shares));
+    let vertices = setup.vertices();
     let [a, b, c] = vertices.map(|vertex| point(vertex.position));
     let between = |from, to, share| zip(from, to, |from, to| mixed(from, to, share));
     let [ab, bc, ca] = shares;
     let positions = [between(a, b, ab), between(b, c, bc), between(c, a, ca)];
-    let places = zip(positions, seen_normals(vertices, shares), |position, normal| (position, normalise(normal)));
-    zip(places, albedos, |(position, normal), albedo| Node { position, normal, albedo })
+    let node = |position, normal| Node { position, normal: normalise(normal), albedo: Node::NO_COLOUR };
+    let mut nodes = zip(positions, seen_normals(vertices, [ab, bc, ca]), node);
+    if VERTEX_COLOURS {
+        nodes.iter_mut().zip(setup.middle_colours([ab, bc, ca])).for_each(|(node, albedo)| node.albedo = albedo);
+    }
+    nodes
 }
 
 /// [`TriangleSetup::six_seen`] by the lengths of the sums of normals, for steep highlights.

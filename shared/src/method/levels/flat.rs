@@ -6,6 +6,7 @@ use crate::{
     format::UNIT,
     interpolate::Constant,
     lighting::{
+        albedo::{Albedo, IfColoured},
         lights::{MeanNormal, point, vertex_cosine},
         material_tables::MaterialTables,
     },
@@ -31,7 +32,7 @@ impl Method for Flat {
     }
 
     fn shade(&self, setup: &TriangleSetup<'_>, shading: &Shading<'_>, canvas: &mut dyn Canvas) -> u32 {
-        draw_uniform(setup, levels(setup, shading), canvas)
+        draw_uniform(setup, levels(setup.triangle, setup.vertices, setup.colour_at([1; 3]), shading), canvas)
     }
 }
 
@@ -54,7 +55,7 @@ impl Loops for Flat {
                 let normal = wide(setup.triangle.normal);
                 tables.one_light([vertex_cosine(normal, towards), vertex_cosine(normal, half)])
             }
-            None => tables.colour(levels(setup, shading)),
+            None => tables.colour(levels(setup.triangle, setup.vertices, setup.colour_at([1; 3]), shading)),
         };
         Some(setup.fill(|| Constant, Solid::face(colour), band))
     }
@@ -62,12 +63,12 @@ impl Loops for Flat {
 
 /// Levels at the centroid with the plane's normal.
 #[inline(never)]
-fn levels(setup: &TriangleSetup<'_>, shading: &Shading<'_>) -> [i32; 3] {
-    let (normal, albedo) = (wide(setup.triangle.normal), setup.colour_at([1; 3]));
+fn levels(triangle: &Triangle, vertices: &[Vertex], albedo: IfColoured<Option<Albedo>>, shading: &Shading<'_>) -> [i32; 3] {
+    let normal = wide(triangle.normal);
     if shading.lighting.is_constant() {
         return shading.constant_levels(&MeanNormal::at(normal), albedo);
     }
-    shading.levels(&Node { albedo, ..centroid(setup.triangle, setup.vertices, normal) })
+    shading.levels(&Node { albedo, ..centroid(triangle, vertices, normal) })
 }
 
 /// The triangle's centroid, and the `normal` of its plane (Q2.14).

@@ -6,8 +6,13 @@
 
 use crate::{
     features::PERSPECTIVE,
+    geometry::projection::ScreenVertex,
     interpolate::{by_column::ByColumn, plane::Plane},
-    lighting::{albedo::Albedo, material_tables::MaterialTables, reflectance::Reflectance},
+    lighting::{
+        albedo::{Albedo, IfColoured},
+        material_tables::MaterialTables,
+        reflectance::Reflectance,
+    },
     math::vector::zip,
     method::{
         Facts, LinearWay, Loops, Method, RANGE, Shading, Style, TriangleSetup, VertexLight, channels, fit_levels, largest_range,
@@ -99,16 +104,15 @@ pub(crate) fn draw_three<C: Pixel>(
     tables: MaterialTables<'_, C>,
     band: &mut Band<'_, C>,
 ) -> u32 {
-    let reflectance = tables.reflectance.reflectance();
+    let ([a, b, c], reflectance) = (setup.corners, tables.reflectance.reflectance());
     // By the table of colours where the light has no highlight.
     if has_ramp(setup, reflectance) {
         let level = |[cosine, ..]: [i32; 4]| reflectance.ramp_level(cosine) + raise;
-        let [a, b, c] = setup.corners;
         let levels = || [level(a.light), level(b.light), level(c.light)];
         return setup.fill(|| one::<C>(setup.gradients, levels()), Ramp(tables.ramps), band);
     }
     let channels = || {
-        let [[r0, g0, b0], [r1, g1, b1], [r2, g2, b2]] = reflections(setup, reflectance);
+        let [[r0, g0, b0], [r1, g1, b1], [r2, g2, b2]] = reflections([a, b, c], setup.albedos, reflectance);
         [[r0, r1, r2], [g0, g1, g2], [b0, b1, b2]]
     };
     shading.fill_three(setup, channels, raise, |plane| plane, band)
@@ -154,7 +158,7 @@ fn corner_levels(setup: &TriangleSetup<'_>, shading: &Shading<'_>) -> [[i32; 3];
 /// The levels at the corners under one constant light.
 pub(crate) fn reflected(setup: &TriangleSetup<'_>, reflectance: &Reflectance) -> [[i32; 3]; 3] {
     if reflectance.three_channels() || setup.albedos().is_some() {
-        reflections(setup, reflectance)
+        reflections(setup.corners, setup.albedos, reflectance)
     } else {
         setup.corners.map(|corner| [corner.light[2]; 3])
     }
@@ -162,9 +166,8 @@ pub(crate) fn reflected(setup: &TriangleSetup<'_>, reflectance: &Reflectance) ->
 
 /// The levels at corners whose light is [`VertexLight::ReflectionOrLevels`] of one constant light in three channels.
 #[inline(never)]
-fn reflections(setup: &TriangleSetup<'_>, reflectance: &Reflectance) -> [[i32; 3]; 3] {
-    let [a, b, c] = setup.corners;
-    if let Some(albedos) = setup.albedos() {
+fn reflections([a, b, c]: [&ScreenVertex; 3], albedos: IfColoured<Option<&[Albedo; 3]>>, reflectance: &Reflectance) -> [[i32; 3]; 3] {
+    if let Some(albedos) = albedos.first().copied().flatten() {
         let lit = |albedo: Albedo, [cosine, _, highlight, _]: [i32; 4]| albedo.lit(reflectance.reflected_parts(cosine, highlight as u32));
         return zip(*albedos, [a.light, b.light, c.light], lit);
     }
