@@ -25,7 +25,7 @@ impl Method for Cartoon {
 
     /// Called for each triangle and band; returns how many pixels were drawn.
     fn shade(&self, setup: &TriangleSetup<'_>, _: &Shading<'_>, canvas: &mut dyn Canvas) -> u32 {
-        setup.draw(&levels_at(setup.corners.map(|corner| corner.levels())), *self, canvas)
+        setup.draw(&levels_at(setup.levels()), *self, canvas)
     }
 }
 

@@ -231,7 +231,7 @@ fn draw_in<C: Pixel, F: FromDrawn<C>>(
     // The core has all features here.
     let has = |feature| match feature {
         Feature::Text => board.has_text(),
-        Feature::Antialias | Feature::LightShapes => antialias,
+        Feature::Antialias | Feature::LightShapes | Feature::VertexColours => antialias,
         _ => true,
     };
     if let Some(feature) = Feature::missing(&stream, &Channels::of::<C>(), has) {

@@ -7,7 +7,8 @@ use super::{
     report, scenes,
 };
 use anyhow::Result;
-use microphong::{format::ErrorBudget, renderer::check};
+use embedded_graphics_core::pixelcolor::Rgb565;
+use microphong::{Stream, features::Feature, format::ErrorBudget, pixel::Channels, renderer::check};
 use microphong_sim::{
     bench::{
         Bench, Measurement, PICO_HZ, Processor, Timing, baseline, board_styles,
@@ -178,7 +179,12 @@ pub(crate) fn run(arguments: &Arguments) -> Result<Outcome> {
     let steps = scenes.iter().map(|(_, wanted)| wanted.len() + others.len() * again(wanted).len()).sum::<usize>();
     let steps = steps + 1 + common.len() * with_peers.len();
     let bar = report::progress(steps as u64, "counting instructions");
-    let bench = if arguments.antialias { Bench::antialiased(&boards.values) } else { Bench::new(&boards.values) }?;
+    let bench = match arguments.antialias {
+        true => Bench::antialiased(&boards.values)?,
+        // The plain program lacks some features.
+        false if scenes.iter().any(|(scene, _)| needs_more(scene)) => Bench::of_program(&boards.values, board_styles::Program::Antialias)?,
+        false => Bench::new(&boards.values)?,
+    };
     bar.inc(1);
     let mut all = Vec::new();
     for (scene, wanted) in &scenes {
@@ -209,6 +215,14 @@ pub(crate) fn run(arguments: &Arguments) -> Result<Outcome> {
         }
     }
     Ok(Outcome::Done)
+}
+
+/// Whether `scene` has colours at corners, lights with a range or a cone, or light from the sky, which the plain programs of boards lack.
+fn needs_more(scene: &Scene) -> bool {
+    let channels = &Channels::of::<Rgb565>();
+    let needs =
+        |stream: Stream<'_>| [Feature::VertexColours, Feature::LightShapes].iter().any(|feature| feature.is_needed_by(&stream, channels));
+    scene.stream.parse().is_ok_and(needs)
 }
 
 /// Counts `scenes` by the `wanted` methods in the styles of each board.

@@ -92,6 +92,11 @@ impl Board {
             Outlines::of(stream.header).is_none(),
             "the firmware of {name} draws no lines along outlines; remove them, or write a program with the cargo feature antialias"
         );
+        ensure!(
+            stream.corner_colours.is_empty(),
+            "the firmware of {name} draws no colours at corners; convert the mesh with --colours none, or write a program with the cargo feature \
+             vertex-colours"
+        );
         let size = Size::new(layout.width as u32, *height as u32);
         let mut memory = vec![0; layout.words::<Rgb565>()];
         let shader = Shader::of(stream)?;

@@ -178,7 +178,12 @@ fn features_of(scene: &Scene, arguments: &Arguments) -> Result<Vec<Features>> {
     needs.sort_unstable();
     needs.dedup();
     // What no measured program has.
-    for (feature, what) in [(Feature::LightShapes, "these lights"), (Feature::Antialias, "the lines along outlines")] {
+    let lacking = [
+        (Feature::LightShapes, "these lights"),
+        (Feature::Antialias, "the lines along outlines"),
+        (Feature::VertexColours, "the colours, by convert --colours none"),
+    ];
+    for (feature, what) in lacking {
         let name = feature.name();
         if needs.contains(&name) {
             let text = format!("{} needs the cargo feature {name}, which the measured programs lack; remove {what}", scene.name);

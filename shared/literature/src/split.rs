@@ -69,7 +69,7 @@ impl<'a, 'f> SubTriangles<'a, 'f> {
 
     /// Light at the triangle's corners.
     pub fn corners(&self) -> [Levels; 3] {
-        self.setup.corners.map(|corner| corner.levels())
+        self.setup.levels()
     }
 
     /// Light at the triangle's corners and edge midpoints.

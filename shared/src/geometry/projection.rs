@@ -28,17 +28,6 @@ pub struct ScreenVertex {
     pub state: State,
 }
 
-impl ScreenVertex {
-    /// Returns the light levels of the vertex: red, green, blue, each Q9.7 from 0 to 255. Use it in a method whose
-    /// [`Facts::vertex_light`](crate::method::Facts::vertex_light) is [`VertexLight::Levels`](crate::method::VertexLight::Levels).
-    #[inline]
-    #[must_use]
-    pub fn levels(&self) -> [i32; 3] {
-        let [r, g, b, _] = self.light;
-        [r, g, b]
-    }
-}
-
 /// The state of a cached vertex in this frame.
 #[derive(FromBytes, IntoBytes, Immutable, KnownLayout, Clone, Copy, Debug, PartialEq, Eq)]
 #[repr(transparent)]

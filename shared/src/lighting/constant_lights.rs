@@ -1,8 +1,9 @@
 //! The colours of a material under constant lights, for pixel loops. Diffuse light is walked, and highlights are looked up.
 
 use crate::{
-    arch::product::upper,
+    arch::product::{unsigned_product, upper},
     format::{BIAS, CHANNEL, COSINE, INTENSITY, LEVEL, RAMP},
+    lighting::albedo::SHARE,
     math::highlight_lut::ENTRY,
     pixel::{
         Pixel,
@@ -173,6 +174,17 @@ impl Sum {
         self.ambient
     }
 
+    /// The sum on a surface that reflects a `share` of ambient and diffuse light, Q0.16. `ambient` is the level of ambient light alone.
+    pub(super) fn painted(self, ambient: i32, share: i32) -> Self {
+        let reflected = |level: i32| (unsigned_product(level as u32, share as u32) >> SHARE) as i32;
+        let lit = reflected(ambient);
+        Self {
+            ambient: self.ambient.wrapping_sub(ambient).wrapping_add(lit),
+            diffuse: ((self.diffuse as u32 * share as u32 + (1 << (SHARE - 1))) >> SHARE) as i32,
+            ..self
+        }
+    }
+
     /// Adds `by` to all levels, Q10.22. A sum that overflows is not used.
     pub(super) fn raised(self, by: i32) -> Self {
         Self { ambient: self.ambient.wrapping_add(by), ..self }
@@ -198,6 +210,13 @@ const _: () = assert!(ENTRY + LEVEL - 1 == CHANNEL);
 pub(crate) fn cosine(bits: u32, diffuse: i32) -> i32 {
     // Armv7-M shifts and clamps by one instruction.
     (diffuse >> ((bits + FULL_BITS - FACTOR) & 31)).clamp(0, (1 << FACTOR) - 1)
+}
+
+impl<'a, C: Pixel> OneLightRgb<'a, C> {
+    /// The colours of these sums for even rows and for odd ones.
+    pub(crate) fn of([even, odd]: &'a [Sums; 2]) -> Self {
+        Self(ByTurns::new([even, odd]))
+    }
 }
 
 impl<C> OneLightRgb<'_, C> {

@@ -4,7 +4,8 @@ use crate::{
     features::{COLOURS, LIGHTS},
     format::{BIAS, CHANNEL, COSINE, INTENSITY, LEVEL, WALK},
     lighting::{
-        constant_lights::{ColouredRgb, FACTOR, OneLightRamp, OneLightRgb, SummedRgb, TwoLightsRgb},
+        albedo::Albedo,
+        constant_lights::{ColouredRgb, FACTOR, OneLightRamp, OneLightRgb, SummedRgb, Sums, TwoLightsRgb},
         reflectance::{FULL, LitMaterial, Reflectance},
     },
     math::vector::zip,
@@ -91,6 +92,17 @@ impl<'a, C: Pixel> MaterialTables<'a, C> {
     #[inline(always)]
     pub(crate) fn coloured_rgb(&self) -> ColouredRgb<'a, C> {
         ColouredRgb { sums: self.sums(), ambient: self.reflectance.pure_ambient() }
+    }
+
+    /// The sums of [`Self::one_light_rgb`] on a surface of this colour, for even rows and for odd ones.
+    #[inline(never)]
+    pub(crate) fn painted_sums(&self, albedo: Albedo) -> [Sums; 2] {
+        let ([[even, ..], [odd, ..]], ambient) = (&self.reflectance.reflectance().sums, self.reflectance.pure_ambient());
+        [even, odd].map(|sums| {
+            zip(*sums, zip(ambient, albedo.shares(), |ambient, share| (ambient, share)), |sum, (ambient, share)| {
+                sum.painted(ambient, share)
+            })
+        })
     }
 
     /// Whether the material has three channels. Formats of greys never have, so the compiler leaves this code out for them.

@@ -123,8 +123,6 @@ impl<C: Pixel> Drawing<'_, C> {
     fn draw_word_sized<L: Loops, const THREE: bool>(&self, triangle: &Triangle, key: u32, band: &mut Band<'_, C>) -> Option<u32> {
         let (by, corners) = turned(self.pass.corners(triangle)?);
         let albedos = painting::turned(self.pass.corner_colours(triangle), by);
-        let painted = self.pass.painted(corners, &albedos);
-        let corners = painting::or_painted(corners, &painted);
         let place = band.active.take(key);
         let (screen, gradients, needs_depth_test);
         // Decision: continued.

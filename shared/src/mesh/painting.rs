@@ -2,9 +2,7 @@
 
 use crate::{
     features::COLOURED,
-    geometry::projection::ScreenVertex,
-    lighting::albedo::{Albedo, IfColoured, Parts},
-    math::vector::zip,
+    lighting::albedo::{Albedo, IfColoured},
     raster::triangle::turn,
     stream::{MeshColours, Stream, record::Mesh},
 };
@@ -39,24 +37,6 @@ impl<'f> Painting<'f> {
 #[inline(always)]
 pub(super) fn turned(corners: Corners, by: usize) -> Corners {
     corners.map(|albedos| albedos.map(|albedos| turn(albedos, by)))
-}
-
-/// Copies of corners that hold levels of light in place of [`Parts`].
-#[inline(never)]
-pub(super) fn painted([a, b, c]: [&ScreenVertex; 3], albedos: &[Albedo; 3]) -> [ScreenVertex; 3] {
-    zip([*a, *b, *c], *albedos, |corner, albedo| {
-        let [r, g, b] = albedo.lit(Parts::of_vertex(corner.light));
-        ScreenVertex { light: [r, g, b, 0], ..corner }
-    })
-}
-
-/// The corners, or their painted copies if there are any.
-#[inline(always)]
-pub(super) fn or_painted<'a>(corners: [&'a ScreenVertex; 3], painted: &'a IfColoured<Option<[ScreenVertex; 3]>>) -> [&'a ScreenVertex; 3] {
-    match painted.first() {
-        Some(Some(painted)) => painted.each_ref(),
-        _ => corners,
-    }
 }
 
 /// The shares of each channel at the corners; black if they have no colours.

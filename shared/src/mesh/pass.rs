@@ -9,7 +9,6 @@ use crate::{
         projection::{ScreenVertex, State},
         viewport::{Bounds, Viewport},
     },
-    lighting::albedo::IfColoured,
     mesh::{
         painting::{self, Corners, Painting},
         vertices::VertexStage,
@@ -88,14 +87,6 @@ impl MeshPass<'_> {
         Some([self.cached.get(usize::from(a))?, self.cached.get(usize::from(b))?, self.cached.get(usize::from(c))?])
     }
 
-    /// Copies of `corners` with their levels in these colours, if vertices hold [`Parts`](crate::lighting::albedo::Parts).
-    #[inline(always)]
-    pub(super) fn painted(&self, corners: [&ScreenVertex; 3], albedos: &Corners) -> IfColoured<Option<[ScreenVertex; 3]>> {
-        albedos
-            .each_ref()
-            .map(|albedos| albedos.as_ref().filter(|_| self.stage.holds_parts()).map(|albedos| painting::painted(corners, albedos)))
-    }
-
     /// Whether other triangles may overlap this one.
     #[inline(always)]
     pub(super) fn needs_depth_test(&self, screen: &ScreenTriangle) -> bool {
@@ -169,12 +160,10 @@ impl MeshPass<'_> {
             return 0;
         }
         let albedos = painting::turned(placed.albedos, screen.turned);
-        let corners = turn(placed.corners, screen.turned);
-        let painted = self.painted(corners, &albedos);
         let setup = TriangleSetup {
             screen: &screen,
             gradients: &gradients,
-            corners: painting::or_painted(corners, &painted),
+            corners: turn(placed.corners, screen.turned),
             albedos: painting::lent(&albedos),
             turned: screen.turned,
             triangle: placed.triangle,

@@ -105,6 +105,6 @@ pub enum VertexLight {
     /// drawn in three. In all other scenes it is like [`Self::Cosines`].
     #[doc(hidden)]
     CosinesAndReflection,
-    /// The light levels of red, green and blue, for any number and kind of lights: see [`ScreenVertex::levels`](crate::method::ScreenVertex::levels).
+    /// The light levels of red, green and blue, for any number and kind of lights: see [`TriangleSetup::levels`](crate::method::TriangleSetup::levels).
     Levels,
 }

@@ -29,9 +29,10 @@ use crate::{
     geometry::viewport::first_centre,
     interpolate::{Checkerboard, perspective::PerspectivePatch},
     lighting::{
-        albedo::{Albedo, IfColoured},
+        albedo::{Albedo, IfColoured, Parts},
         material_tables::MaterialTables,
     },
+    math::vector::zip,
     pixel::{Pixel, half_step, ramps::Ramps},
     raster::{
         active::ActiveTriangle,
@@ -274,6 +275,20 @@ impl TriangleSetup<'_> {
         self.albedos.first().copied().flatten()
     }
 
+    /// Returns the light levels of the corners: red, green, blue, each Q9.7 from 0 to 255, with the colours of the corners if they have any. Use it in
+    /// a method whose [`Facts::vertex_light`] is [`VertexLight::Levels`].
+    #[inline(always)]
+    #[must_use]
+    pub fn levels(&self) -> [[i32; 3]; 3] {
+        match self.albedos() {
+            Some(albedos) => painted(albedos, self.corners),
+            None => self.corners.map(|corner| {
+                let [r, g, b, _] = corner.light;
+                [r, g, b]
+            }),
+        }
+    }
+
     /// Returns the inverse depths of the corners (Q0.28), for perspective-correct interpolation. Returns `None` if that is off, or if all
     /// corners are equally far, so that linear interpolation on the screen gives the same result.
     #[doc(hidden)]
@@ -453,6 +468,12 @@ impl TriangleSetup<'_> {
         }
         by_fraction(cosine, self.triangle.min_normal_length) << (16 - NORMAL_LENGTH)
     }
+}
+
+/// The levels of corners of these colours, whose vertices hold [`Parts`].
+#[inline(never)]
+fn painted(albedos: &[Albedo; 3], [a, b, c]: [&ScreenVertex; 3]) -> [[i32; 3]; 3] {
+    zip(*albedos, [a.light, b.light, c.light], |albedo, light| albedo.lit(Parts::of_vertex(light)))
 }
 
 /// An area of the screen that can be shaded: a triangle ([`TriangleSetup`]) or a part of one.

@@ -40,7 +40,7 @@ impl Method for Cubic {
 }
 
 fn draw(setup: &TriangleSetup<'_>, shading: &Shading<'_>, canvas: &mut dyn Canvas) -> u32 {
-    let [a, b, c] = setup.corners.map(|corner| corner.levels());
+    let [a, b, c] = setup.levels();
     let thirds = [[2, 1, 0], [1, 2, 0], [0, 2, 1], [0, 1, 2], [1, 0, 2], [2, 0, 1], [1, 1, 1]];
     let [ab, ba, bc, cb, ca, ac, middle] = thirds.map(|weights| shading.levels(&third(setup, weights, 0)));
     let nodes = [a, b, c, ab, ba, bc, cb, ca, ac, middle];

@@ -181,6 +181,11 @@ fn draw_coloured<C: Pixel>(
     if !is_plane(setup, albedos) {
         return None;
     }
+    let [a, b, c] = *albedos;
+    if a == b && b == c {
+        let sums = &tables.painted_sums(a);
+        return Some(draw_rgb(setup, cosines, lengths, OneLightRgb::of(sums), tables.reflectance.table()?, band));
+    }
     let colours = tables.coloured_rgb();
     let (lookup, full) = (QuotientLookup::new(tables.reflectance.table()?), colours.diffuse());
     if setup.leaves_out_highlight(tables.reflectance, &cosines[1]) {

@@ -65,13 +65,16 @@ impl Loops for Gouraud {
                 LinearWay::InSpace => return None,
             }
         }
+        if !THREE && setup.albedos().is_some() {
+            return Some(Shading::fill_one(setup, || setup.levels().map(|[level, ..]| level), tables, band));
+        }
         if !THREE {
             return Some(setup.fill(|| one::<C>(setup.gradients, [a.light[2], b.light[2], c.light[2]]), Ramp(tables.ramps), band));
         }
         // Each of these is drawn by a call of its own: by measurement, what they have in common is set up sooner.
         if shading.constant.is_none() {
             let channels = || {
-                let ([r0, g0, b0], [r1, g1, b1], [r2, g2, b2]) = (a.levels(), b.levels(), c.levels());
+                let [[r0, g0, b0], [r1, g1, b1], [r2, g2, b2]] = setup.levels();
                 [[r0, r1, r2], [g0, g1, g2], [b0, b1, b2]]
             };
             return Some(shading.fill_three(setup, channels, 0, |plane| plane, band));
@@ -151,8 +154,7 @@ fn corner_levels(setup: &TriangleSetup<'_>, shading: &Shading<'_>) -> [[i32; 3];
     if shading.constant.is_some() {
         return reflected(setup, &shading.reflectance);
     }
-    let [a, b, c] = setup.corners;
-    [a.levels(), b.levels(), c.levels()]
+    setup.levels()
 }
 
 /// The levels at the corners under one constant light.

@@ -118,7 +118,7 @@ fn one_level(setup: &TriangleSetup<'_>, shading: &Shading<'_>) -> [i32; 6] {
 /// Node levels under any lights: corners are lit already, midpoints are lit here.
 #[inline(always)]
 fn lit(setup: &TriangleSetup<'_>, shading: &Shading<'_>) -> [[i32; 6]; 3] {
-    let ([r0, g0, b0], [r1, g1, b1], [r2, g2, b2]) = (setup.corners[0].levels(), setup.corners[1].levels(), setup.corners[2].levels());
+    let [[r0, g0, b0], [r1, g1, b1], [r2, g2, b2]] = setup.levels();
     let [[r3, g3, b3], [r4, g4, b4], [r5, g5, b5]] = shading.middle_levels(setup);
     [[r0, r1, r2, r3, r4, r5], [g0, g1, g2, g3, g4, g5], [b0, b1, b2, b3, b4, b5]]
 }
