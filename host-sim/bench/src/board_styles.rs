@@ -24,6 +24,9 @@ pub enum Program {
 }
 
 impl Program {
+    /// The program that draws colours at corners.
+    pub const VERTEX_COLOURS: Self = Self::Styles("rgb565,vertex-colours");
+
     /// Builds it for `board`, and returns the ELF's path. A program of other features takes the place of `styles`.
     ///
     /// # Errors

@@ -8,7 +8,7 @@ use super::{
 };
 use anyhow::Result;
 use embedded_graphics_core::pixelcolor::Rgb565;
-use microphong::{Stream, features::Feature, format::ErrorBudget, pixel::Channels, renderer::check};
+use microphong::{features::Feature, format::ErrorBudget, pixel::Channels, renderer::check};
 use microphong_sim::{
     bench::{
         Bench, Measurement, PICO_HZ, Processor, Timing, baseline, board_styles,
@@ -181,9 +181,7 @@ pub(crate) fn run(arguments: &Arguments) -> Result<Outcome> {
     let bar = report::progress(steps as u64, "counting instructions");
     let bench = match arguments.antialias {
         true => Bench::antialiased(&boards.values)?,
-        // The plain program lacks some features.
-        false if scenes.iter().any(|(scene, _)| needs_more(scene)) => Bench::of_program(&boards.values, board_styles::Program::Antialias)?,
-        false => Bench::new(&boards.values)?,
+        false => Bench::of_program(&boards.values, program(&scenes))?,
     };
     bar.inc(1);
     let mut all = Vec::new();
@@ -217,12 +215,17 @@ pub(crate) fn run(arguments: &Arguments) -> Result<Outcome> {
     Ok(Outcome::Done)
 }
 
-/// Whether `scene` has colours at corners, lights with a range or a cone, or light from the sky, which the plain programs of boards lack.
-fn needs_more(scene: &Scene) -> bool {
-    let channels = &Channels::of::<Rgb565>();
-    let needs =
-        |stream: Stream<'_>| [Feature::VertexColours, Feature::LightShapes].iter().any(|feature| feature.is_needed_by(&stream, channels));
-    scene.stream.parse().is_ok_and(needs)
+/// The least program of boards that has what `scenes` need.
+fn program(scenes: &[(Scene, Vec<(Processor, Shader)>)]) -> board_styles::Program {
+    let needs = |feature: Feature| {
+        let channels = &Channels::of::<Rgb565>();
+        scenes.iter().any(|(scene, _)| scene.stream.parse().is_ok_and(|stream| feature.is_needed_by(&stream, channels)))
+    };
+    match (needs(Feature::LightShapes), needs(Feature::VertexColours)) {
+        (true, _) => board_styles::Program::Antialias,
+        (false, true) => board_styles::Program::VERTEX_COLOURS,
+        (false, false) => board_styles::Program::Plain,
+    }
 }
 
 /// Counts `scenes` by the `wanted` methods in the styles of each board.
