@@ -53,7 +53,7 @@ impl Frame {
     #[must_use]
     pub fn weakening(&self, facet: &Facet, point: [f64; 2]) -> f64 {
         let (weights, material) = (facet.weights(point), self.material(facet));
-        let position = facet.position(weights);
+        let (position, albedo) = (facet.position(weights), facet.albedo(weights));
         let mut levels = [0.0; 3];
         for light in self.lights.iter().filter(|light| light.range.is_some() || light.cone.is_some()) {
             let Place::Near(place) = light.place else { continue };
@@ -62,7 +62,7 @@ impl Frame {
             let strength = |sign: f64| light.strength_beside(position, [-sign * errors[0], sign * errors[1]]);
             let change = strength(1.0) - strength(-1.0);
             for (k, level) in levels.iter_mut().enumerate() {
-                *level += 255.0 * light.colour[k] * change * (material.diffuse[k] + material.specular[k]);
+                *level += 255.0 * light.colour[k] * change * (albedo[k] * material.diffuse[k] + material.specular[k]);
             }
         }
         levels.into_iter().fold(0.0, f64::max)
@@ -83,7 +83,7 @@ impl Frame {
     #[must_use]
     pub fn sensitivity(&self, facet: &Facet, point: [f64; 2], whole: bool) -> f64 {
         let (weights, material) = (facet.weights(point), self.material(facet));
-        let (position, normal) = (facet.position(weights), direction(facet.normal(weights)));
+        let (position, albedo, normal) = (facet.position(weights), facet.albedo(weights), direction(facet.normal(weights)));
         let at = |cosine: f64| highlight(cosine, material.exponent);
         let mut levels = [0.0; 3];
         for light in &self.lights {
@@ -94,7 +94,7 @@ impl Frame {
             let [_, half] = self.cosines(light, position, normal);
             let highlight = at(half + change) - at(half - change);
             for (k, level) in levels.iter_mut().enumerate() {
-                *level += 255.0 * light.colour[k] * (material.diffuse[k] * change + material.specular[k] * highlight);
+                *level += 255.0 * light.colour[k] * (albedo[k] * material.diffuse[k] * change + material.specular[k] * highlight);
             }
         }
         levels.into_iter().fold(0.0, f64::max)

@@ -7,7 +7,7 @@ use microphong::{
     format::{DEPTH, Gain, NORMAL_LENGTH, ROTATION, SUBPIXEL, UNIT},
     geometry::{lens::Lens, model_view::ModelView, projection::View},
     stream::{
-        record,
+        MeshColours, record,
         record::{EYE_SPACE, PERSPECTIVE, POINT, SKY, VIEWER_LOCAL},
     },
 };
@@ -48,6 +48,9 @@ pub struct Facet {
     pub normals: [V3; 3],
     /// Corners in object space.
     pub positions: [V3; 3],
+    /// Colours of the corners: the part of the ambient and of the diffuse light that is reflected, besides what the material does. `None` if the mesh
+    /// has no colours.
+    pub albedos: Option<[V3; 3]>,
     /// Unit normal of the plane.
     pub plane: V3,
     /// No interpolated normal is shorter.
@@ -56,6 +59,15 @@ pub struct Facet {
     pub material: usize,
     /// Index of the triangle in the stream.
     pub id: u32,
+}
+
+/// A point of a triangle: what its light depends on, besides cosines.
+#[derive(Clone, Copy, Debug)]
+pub(super) struct SurfacePoint {
+    /// In object space.
+    pub(super) position: V3,
+    /// Red, green and blue; 1 reflects all that the material does.
+    pub(super) albedo: V3,
 }
 
 /// Converts fixed-point numbers of a stream.
@@ -144,11 +156,12 @@ impl Frame {
     }
 }
 
+/// The corners of a record in the order of a facet. Streams list corners counter-clockwise.
+const CLOCKWISE: [usize; 3] = [0, 2, 1];
+
 /// A record as a facet on the screen; `None` if it shows its back, is empty there, or has to be clipped.
 fn facet(stream: Stream<'_>, mesh: &record::Mesh, triangle: &record::Triangle, id: u32, view: &View) -> Option<Facet> {
-    // Streams list corners counter-clockwise.
-    let [a, b, c] = triangle.corners;
-    let vertices = [a, c, b].map(|corner| mesh.first_vertex as usize + usize::from(corner));
+    let vertices = CLOCKWISE.map(|corner| mesh.first_vertex as usize + usize::from(triangle.corners[corner]));
     let mut corners = [record::Vertex::ZERO; 3];
     let mut places = [[0; 3]; 3];
     for k in 0..3 {
@@ -156,6 +169,15 @@ fn facet(stream: Stream<'_>, mesh: &record::Mesh, triangle: &record::Triangle, i
         let (place, inside) = view.lens.project(view.to_eye(corners[k].position));
         places[k] = inside.then_some(place)?;
     }
+    let albedos = stream.colours_of(mesh).and_then(|MeshColours { palette, corners }| {
+        let colours = corners.get((id - mesh.first_triangle) as usize)?.colours;
+        let mut albedos = [[0.0; 3]; 3];
+        for (albedo, corner) in albedos.iter_mut().zip(CLOCKWISE) {
+            let colour = palette.get(usize::from(colours[corner]))?;
+            *albedo = colour.channels.map(|channel| f64::from(channel) / 255.0);
+        }
+        Some(albedos)
+    });
     let [p, q, r] = places.map(|[x, y, _]| [i64::from(x), i64::from(y)]);
     if (q[0] - p[0]) * (r[1] - p[1]) - (q[1] - p[1]) * (r[0] - p[0]) <= 0 {
         return None;
@@ -167,6 +189,7 @@ fn facet(stream: Stream<'_>, mesh: &record::Mesh, triangle: &record::Triangle, i
         vertices,
         normals: corners.map(|v| real(v.normal, UNIT)),
         positions: corners.map(|v| real(v.position, UNIT)),
+        albedos,
         plane: real(triangle.normal, UNIT),
         min_normal_length: f64::from(triangle.min_normal_length) / f64::from(NORMAL_LENGTH).exp2(),
         material: mesh.material.into(),
@@ -191,6 +214,7 @@ impl Facet {
             vertices,
             normals,
             positions,
+            albedos: None,
             plane: direction(cross(sub(c, a), sub(b, a))),
             min_normal_length: shortest(&normals),
             material: 0,
@@ -237,10 +261,20 @@ impl Facet {
         mixed(&self.positions, weights)
     }
 
-    /// The point of the triangle, in object space, that a method takes at a point of the screen.
+    /// The colour of a point of the triangle, linear between the corners: white if they have none.
     #[must_use]
-    pub fn at(&self, p: [f64; 2]) -> V3 {
-        self.position(self.weights(p))
+    pub fn albedo(&self, weights: V3) -> V3 {
+        self.albedos.map_or([1.0; 3], |albedos| mixed(&albedos, weights))
+    }
+
+    /// The point of the triangle with these affine coordinates.
+    pub(super) fn point(&self, weights: V3) -> SurfacePoint {
+        SurfacePoint { position: self.position(weights), albedo: self.albedo(weights) }
+    }
+
+    /// The point of the triangle that a method takes at a point of the screen.
+    pub(super) fn at(&self, p: [f64; 2]) -> SurfacePoint {
+        self.point(self.weights(p))
     }
 
     /// The normal that a node of a polynomial has: a corner's as it stands, all others of unit length.

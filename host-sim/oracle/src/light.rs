@@ -2,7 +2,7 @@
 
 use super::{
     Levels, Shade,
-    frame::{Facet, Frame},
+    frame::{Facet, Frame, SurfacePoint},
     scene::{Light, Material, direction},
 };
 use microphong::math::highlight_lut;
@@ -55,9 +55,12 @@ impl Frame {
     }
 
     /// The one channel in which a facet is shaded: the brightest, if all light that its material reflects has one hue, to 1/1024 of the largest
-    /// channel. Such a material is interpolated in one channel under a table of colours.
+    /// channel. Such a material is interpolated in one channel under a table of colours. A facet with colours always has three channels.
     #[must_use]
     pub fn only_channel(&self, facet: &Facet) -> Option<usize> {
+        if facet.albedos.is_some() {
+            return None;
+        }
         let material = self.material(facet);
         let product = |a: V3, b: V3| [0, 1, 2].map(|k| a[k] * b[k]);
         let lit = self.lights.iter().flat_map(|light| [material.diffuse, material.specular].map(|gain| product(light.colour, gain)));
@@ -72,30 +75,31 @@ impl Frame {
         colours.iter().all(alike).then(|| brightest(base))
     }
 
-    /// `255 (ka + Σ colour (kd d + ks s))` over all lights, each with its `[d, s]`, d from 0 to 1: what approximation lifts above
-    /// one counts as one. Ranges and cones weaken lights as at `position`.
-    pub(super) fn levels(&self, facet: &Facet, position: V3, reflected: impl IntoIterator<Item = [f64; 2]>) -> Levels {
-        let material = self.material(facet);
-        let mut sum = material.ambient;
+    /// `255 (albedo ka + Σ colour (albedo kd d + ks s))` over all lights, each with its `[d, s]`, d from 0 to 1: what approximation lifts above
+    /// one counts as one. The albedo is that of `point`, and ranges and cones weaken lights as there.
+    pub(super) fn levels(&self, facet: &Facet, point: SurfacePoint, reflected: impl IntoIterator<Item = [f64; 2]>) -> Levels {
+        let (material, SurfacePoint { position, albedo }) = (self.material(facet), point);
+        let [ambient, gains] = [material.ambient, material.diffuse].map(|gain| [0, 1, 2].map(|k| gain[k] * albedo[k]));
+        let mut sum = ambient;
         for (light, [diffuse, specular]) in self.lights.iter().zip(reflected) {
             let (strength, specular) = (light.strength(position), if light.is_sky { 0.0 } else { specular });
             for (k, channel) in sum.iter_mut().enumerate() {
-                *channel += light.colour[k] * strength * (material.diffuse[k] * light.diffuse(diffuse) + material.specular[k] * specular);
+                *channel += light.colour[k] * strength * (gains[k] * light.diffuse(diffuse) + material.specular[k] * specular);
             }
         }
         sum.map(|channel| (255.0 * channel).clamp(0.0, 255.0))
     }
 
     /// The level from each light's `[N·L, N·H]`.
-    pub(super) fn lit(&self, facet: &Facet, position: V3, cosines: impl IntoIterator<Item = [f64; 2]>) -> Levels {
+    pub(super) fn lit(&self, facet: &Facet, point: SurfacePoint, cosines: impl IntoIterator<Item = [f64; 2]>) -> Levels {
         let exponent = self.material(facet).exponent;
-        self.levels(facet, position, cosines.into_iter().map(|[diffuse, half]| [diffuse, highlight(half, exponent)]))
+        self.levels(facet, point, cosines.into_iter().map(|[diffuse, half]| [diffuse, highlight(half, exponent)]))
     }
 
     /// The light of a node of a polynomial: Phong's, but that a corner's normal stays as it stands.
     pub(super) fn node(&self, facet: &Facet, weights: V3) -> Levels {
-        let (position, normal) = (facet.position(weights), facet.node(weights));
-        self.lit(facet, position, self.lights.iter().map(|light| self.cosines(light, position, normal)))
+        let (point, normal) = (facet.point(weights), facet.node(weights));
+        self.lit(facet, point, self.lights.iter().map(|light| self.cosines(light, point.position, normal)))
     }
 }
 
@@ -119,7 +123,130 @@ pub(super) fn reflection(light: f64, view: f64, between: f64, exponent: f64) -> 
 pub fn phong<'f>(frame: &'f Frame, facet: &'f Facet) -> Shade<'f> {
     Box::new(move |p| {
         let weights = facet.weights(p);
-        let (position, normal) = (facet.position(weights), direction(facet.normal(weights)));
-        frame.lit(facet, position, frame.lights.iter().map(|light| frame.cosines(light, position, normal)))
+        let (point, normal) = (facet.point(weights), direction(facet.normal(weights)));
+        frame.lit(facet, point, frame.lights.iter().map(|light| frame.cosines(light, point.position, normal)))
     })
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::{NAMES, Place, method};
+    use microphong_models::vector::unit;
+
+    const NEAR: bool = true;
+    const FAR: bool = false;
+    const WHITE: [V3; 3] = [[1.0; 3]; 3];
+    /// Corners of one channel each, and of none.
+    const GRADIENT: [V3; 3] = [[1.0, 0.2, 0.0], [0.0, 1.0, 0.4], [0.5, 0.0, 1.0]];
+    const MATERIAL: Material = Material { ambient: [0.05, 0.1, 0.15], diffuse: [0.5, 0.4, 0.3], specular: [0.3, 0.2, 0.1], exponent: 20.0 };
+
+    /// A bent triangle with these colours.
+    fn facet(albedos: Option<[V3; 3]>) -> Facet {
+        let normals = [[-0.3, -0.2, 1.0], [0.35, -0.1, 1.0], [0.0, 0.4, 1.0]].map(|v| unit(v).expect("a direction"));
+        let positions = [[-0.8, -0.6, 0.0], [0.1, 0.9, 0.1], [0.8, -0.4, 0.2]];
+        Facet { albedos, ..Facet::new([[10.0, 90.0], [40.0, 5.0], [95.0, 70.0]], [0, 1, 2], normals, positions) }
+    }
+
+    /// Two lights, of which the second is near or from the sky.
+    fn frame(material: Material, is_near: bool) -> Frame {
+        let far = Light::even(Place::Far(direction([0.3, 0.4, 0.8])), [0.7, 0.8, 0.9]);
+        let sky = Light { is_sky: true, ..Light::even(Place::Far(direction([0.0, 1.0, 0.2])), [0.3, 0.2, 0.1]) };
+        let close = Light { range: Some(4.0), ..Light::even(Place::Near([-0.9, 1.0, 1.0]), [0.3, 0.2, 0.1]) };
+        Frame {
+            size: (100, 100),
+            facets: Vec::new(),
+            lights: vec![far, if is_near { close } else { sky }],
+            viewer: Place::Far([0.0, 0.0, 1.0]),
+            axes: Facet::CORNERS,
+            materials: vec![material],
+        }
+    }
+
+    /// The levels of a facet by each method that can draw it, at three points.
+    fn all(frame: &Frame, facet: &Facet) -> Vec<(&'static str, Levels)> {
+        let drawn = NAMES.into_iter().filter_map(|name| Some((name, method(name, frame, facet).ok()?)));
+        drawn.flat_map(|(name, shade)| [[48.0, 55.0], [26.5, 50.5], [90.5, 70.5]].map(|point| (name, shade(point)))).collect()
+    }
+
+    fn assert_equal(found: &[(&str, Levels)], expected: &[(&str, Levels)]) {
+        assert!(found.len() == expected.len() && found.len() >= 3 * 20, "{} of {}", found.len(), expected.len());
+        for ((name, a), (other, b)) in found.iter().zip(expected) {
+            assert!(name == other && (0..3).all(|k| (a[k] - b[k]).abs() < 1e-9), "{name}: {a:?}, not {b:?}");
+        }
+    }
+
+    /// Lights far and near, and facets without perspective and with it.
+    fn scenes(material: Material, albedos: Option<[V3; 3]>) -> impl Iterator<Item = (Frame, Facet)> {
+        let shares = [[1.0; 3], [1.0, 0.6, 0.4], [0.55, 0.5, 0.52]];
+        shares.into_iter().flat_map(move |shares| [FAR, NEAR].map(|near| (frame(material, near), Facet { shares, ..facet(albedos) })))
+    }
+
+    /// A triangle with white corners looks like one without colours.
+    #[test]
+    fn white_corners_change_nothing() {
+        for ((frame, white), (_, plain)) in scenes(MATERIAL, Some(WHITE)).zip(scenes(MATERIAL, None)) {
+            assert_equal(&all(&frame, &white), &all(&frame, &plain));
+        }
+    }
+
+    /// One colour at all corners multiplies the ambient and the diffuse reflectance of the material, and leaves highlights as they are.
+    #[test]
+    fn one_colour_multiplies_the_material() {
+        let colour = [0.9, 0.35, 0.0];
+        let product = |gain: V3| [0, 1, 2].map(|k| gain[k] * colour[k]);
+        let multiplied = Material { ambient: product(MATERIAL.ambient), diffuse: product(MATERIAL.diffuse), ..MATERIAL };
+        for ((frame, facet), (other, plain)) in scenes(MATERIAL, Some([colour; 3])).zip(scenes(multiplied, None)) {
+            assert_equal(&all(&frame, &facet), &all(&other, &plain));
+        }
+    }
+
+    /// In ambient light alone a surface shows its colours: by all methods but `flat` those of the point that is seen, and by `flat` their mean.
+    #[test]
+    fn gradients_are_linear_in_space() {
+        let frame = Frame { lights: Vec::new(), ..frame(Material { ambient: [1.0, 0.5, 1.0], ..MATERIAL }, FAR) };
+        let seen = |shares, [a, b, c]: V3, name| {
+            let facet = Facet { shares, ..facet(Some(GRADIENT)) };
+            let [p, q, r] = facet.screen;
+            let point = [0, 1].map(|k| a * p[k] + b * q[k] + c * r[k]);
+            method(name, &frame, &facet).ok().map(|shade| shade(point))
+        };
+        let assert_close = |name: &str, found: Levels, expected: V3| {
+            let expected = [expected[0], 0.5 * expected[1], expected[2]];
+            assert!((0..3).all(|k| (found[k] - 255.0 * expected[k]).abs() < 1e-9), "{name}: {found:?}");
+        };
+        for name in NAMES {
+            let expected = if name == "flat" { [0.5, 0.4, 1.4 / 3.0] } else { [0.45, 0.34, 0.62] };
+            assert_close(name, seen([1.0; 3], [0.2, 0.3, 0.5], name).expect("lights are far"), expected);
+        }
+        for name in ["phong", "gouraud", "sqrt6", "duff"] {
+            // The weights in space are 1/4, 3/8 and 3/8.
+            assert_close(name, seen([1.0, 0.5, 0.25], [0.1, 0.3, 0.6], name).expect("it draws in perspective"), [0.4375, 0.425, 0.525]);
+        }
+    }
+
+    /// Methods that interpolate light interpolate the light of coloured nodes.
+    #[test]
+    fn light_and_colour_are_multiplied_at_nodes() {
+        for near in [FAR, NEAR] {
+            let (frame, facet) = (frame(MATERIAL, near), facet(Some(GRADIENT)));
+            let [a, b, _] = facet.screen;
+            let middle = [0, 1].map(|k| 0.5 * (a[k] + b[k]));
+            let shade = |name, point| method(name, &frame, &facet).expect("a method")(point);
+            let ([first, second], exact) = ([a, b].map(|corner| shade("phong", corner)), shade("phong", middle));
+            let apart = |a: Levels, b: Levels| [0, 1, 2].map(|k| (a[k] - b[k]).abs()).into_iter().fold(0.0, f64::max);
+            let mean = [0, 1, 2].map(|k| 0.5 * (first[k] + second[k]));
+            assert!(
+                apart(shade("gouraud", middle), mean) < 1e-9 && apart(shade("six-point", middle), exact) < 1e-9 && apart(mean, exact) > 1.0
+            );
+        }
+    }
+
+    /// A coloured facet has three channels, also if its material is grey, as are its colours.
+    #[test]
+    fn coloured_facets_have_three_channels() {
+        let frame = frame(Material { ambient: [0.1; 3], diffuse: [0.5; 3], specular: [0.2; 3], exponent: 8.0 }, FAR);
+        let grey = Frame { lights: frame.lights.iter().map(|&light| Light { colour: [1.0; 3], ..light }).collect(), ..frame };
+        assert_eq!([None, Some(WHITE)].map(|albedos| grey.only_channel(&facet(albedos)).is_some()), [true, false]);
+    }
 }

@@ -47,8 +47,8 @@ pub fn chosen<'f>(frame: &'f Frame, facet: &'f Facet, Chosen { way, raises }: Ch
     })
 }
 
-/// One colour: `by_light` from the means of the extremes of cosine and highlight at the corners, otherwise from the means of the extremes of the
-/// corners' levels.
+/// One colour: `by_light` from the means of the extremes of cosine and highlight at the corners, and the albedo at the centre; otherwise from the means
+/// of the extremes of the corners' levels.
 fn solid<'f>(frame: &'f Frame, facet: &'f Facet, by_light: bool) -> Shade<'f> {
     let middle = |values: [f64; 3]| {
         let [least, most] = [f64::min, f64::max].map(|extreme| values.into_iter().reduce(extreme).unwrap_or(0.0));
@@ -60,7 +60,7 @@ fn solid<'f>(frame: &'f Frame, facet: &'f Facet, by_light: bool) -> Shade<'f> {
             let cosines = Facet::CORNERS.map(|corner| frame.cosines(light, facet.position(corner), facet.node(corner)));
             [middle(cosines.map(|[diffuse, _]| diffuse.max(0.0))), middle(cosines.map(|[_, half]| highlight(half, exponent)))]
         });
-        frame.levels(facet, facet.positions[0], reflected)
+        frame.levels(facet, facet.point(Facet::CENTRE), reflected)
     } else {
         let [a, b, c] = Facet::CORNERS.map(|corner| frame.node(facet, corner));
         [0, 1, 2].map(|k| middle([a[k], b[k], c[k]]))

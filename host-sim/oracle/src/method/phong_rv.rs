@@ -11,12 +11,12 @@ pub(super) fn shade<'f>(frame: &'f Frame, facet: &'f Facet) -> Shade<'f> {
     let exponent = frame.material(facet).exponent;
     Box::new(move |p| {
         let weights = facet.weights(p);
-        let (position, normal) = (facet.position(weights), direction(facet.normal(weights)));
+        let (point, normal) = (facet.point(weights), direction(facet.normal(weights)));
         let reflected = |light: &Light| {
-            let rays = frame.rays(light, position);
+            let rays = frame.rays(light, point.position);
             let (diffuse, view) = (dot(normal, rays.light), dot(normal, rays.view));
             [diffuse, reflection(diffuse, view, dot(rays.light, rays.view), exponent)]
         };
-        frame.levels(facet, position, frame.lights.iter().map(reflected))
+        frame.levels(facet, point, frame.lights.iter().map(reflected))
     })
 }

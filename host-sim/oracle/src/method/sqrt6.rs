@@ -2,6 +2,7 @@
 
 use crate::{
     Facet, Frame, Shade,
+    frame::SurfacePoint,
     poly::{SIX, blend, quadratic},
 };
 
@@ -39,9 +40,11 @@ fn fitted<'f>(frame: &'f Frame, facet: &'f Facet, function: fn(f64) -> f64, inve
     let fits: Vec<_> = frame.lights.iter().map(fit).collect();
     Box::new(move |p| {
         let weights = if on_screen { facet.flat_weights(p) } else { facet.weights(p) };
-        let (position, weights) = (facet.position(weights), quadratic(weights));
+        // The albedo is that of the point that is seen. The position, by which lights weaken, is linear on the screen if the quadratic is.
+        let point = SurfacePoint { position: facet.position(weights), ..facet.at(p) };
+        let weights = quadratic(weights);
         let cosines = fits.iter().map(|fit| blend(&weights, fit)).map(|[diffuse, half]| [diffuse, inverse(half)]);
-        frame.lit(facet, position, cosines)
+        frame.lit(facet, point, cosines)
     })
 }
 
