@@ -177,10 +177,10 @@ fn shades<'f>(case: &Case, stream: Stream<'_>, frame: &'f Frame) -> Option<Vec<S
 }
 
 /// Difference of levels of a facet. A material of one hue has one level for all channels, its brightest channel's. Approximation may lift this above
-/// 255 later than others.
+/// 255 later than others. A facet with colours has three levels.
 pub(crate) fn difference(frame: &Frame, facet: &Facet, drawn: [f64; 3], exact: [f64; 3]) -> f64 {
     let all = (0..3).map(|k| (drawn[k] - exact[k]).abs()).fold(0.0, f64::max);
-    let one = drawn[0] == drawn[1] && drawn[1] == drawn[2];
+    let one = facet.albedos.is_none() && drawn[0] == drawn[1] && drawn[1] == drawn[2];
     let brightest = || frame.only_channel(facet).map_or(exact.into_iter().fold(0.0, f64::max), |channel| exact[channel]);
     if one { all.min((drawn[0] - brightest()).abs()) } else { all }
 }

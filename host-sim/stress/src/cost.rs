@@ -8,14 +8,14 @@ use crate::{
     Family, Verdict,
     case::Case,
     random::Random,
+    records::Records,
     scenes::{self, Wishes},
-    shrink::written,
 };
 use anyhow::Result;
 use microphong::{
     format::{GeometricError, Length, SUBPIXEL},
     geometry::{lens::Lens, model_view::ModelView, projection::View},
-    stream::record::{Camera, DIRECTIONAL, Header, Light, Mesh as Record, POINT, Triangle, VIEWER_INFINITE, VIEWER_LOCAL},
+    stream::record::{DIRECTIONAL, Light, Mesh as Record, POINT, Triangle, VIEWER_INFINITE, VIEWER_LOCAL},
 };
 use microphong_models::{
     bytes::StreamBytes,
@@ -26,7 +26,6 @@ use microphong_models::{
 };
 use microphong_render::render::{Format, Style};
 use std::ops::Range;
-use zerocopy::IntoBytes;
 
 /// Counts the instructions of a frame.
 pub trait Count: Sync {
@@ -290,6 +289,8 @@ pub fn case(random: &mut Random) -> Option<Case> {
     let width = random.octaves(1.0, 320.0);
     let size = scenes::size(random, width);
     let case = scenes::of(random, &mesh, size, wishes)?;
+    // Bounds are those of scenes without colours.
+    let case = Case { stream: Records::of(&case.stream.parse().ok()?).without_colours().written()?, ..case };
     // Every triangle in a mesh of its own: what is done for each mesh, or for each mesh in each band.
     let stream = if random.once_in(4) { meshes_of_one(&case.stream)? } else { case.stream };
     let band_rows = if random.once_in(2) { random.pick(1..4) } else { random.pick(1..120) } as u32;
@@ -337,10 +338,8 @@ fn meshes_of_one(bytes: &StreamBytes) -> Option<StreamBytes> {
             triangles.push(Triangle { corners: [0, 1, 2], ..*triangle });
         }
     }
-    let header =
-        Header { meshes: meshes.len() as u16, vertices: vertices.len() as u32, triangles: triangles.len() as u32, ..*stream.header };
     // These scenes are one object.
-    written(header, &[meshes.as_bytes(), stream.materials.as_bytes(), stream.lights.as_bytes(), vertices.as_bytes(), triangles.as_bytes()])
+    Records { meshes, vertices, triangles, ..Records::of(&stream) }.written()
 }
 
 /// Makes the lights and the viewer of a scene all near, or all far away.
@@ -349,11 +348,8 @@ pub fn lit(bytes: &StreamBytes, near: bool) -> Option<StreamBytes> {
     let stream = bytes.parse().ok()?;
     let (kind, viewer) = if near { (POINT, VIEWER_LOCAL) } else { (DIRECTIONAL, VIEWER_INFINITE) };
     let vector = if near { [3, -2, 1] } else { [1, 2, -2] }.map(|c| Length::from_num(c).to_bits() / 3);
-    let lights: Vec<Light> = stream.lights.iter().map(|light| Light { kind, vector, ..*light }).collect();
-    let [meshes, materials, vertices, triangles] =
-        [stream.meshes.as_bytes(), stream.materials.as_bytes(), stream.vertices.as_bytes(), stream.triangles.as_bytes()];
-    written(
-        Header { camera: Camera { viewer, ..stream.header.camera }, ..*stream.header },
-        &[meshes, materials, lights.as_bytes(), vertices, triangles],
-    )
+    let mut records = Records::of(&stream);
+    records.lights.iter_mut().for_each(|light| *light = Light { kind, vector, ..*light });
+    records.header.camera.viewer = viewer;
+    records.written()
 }

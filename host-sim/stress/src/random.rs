@@ -19,6 +19,14 @@ impl Random {
         Self(random)
     }
 
+    /// Another source, whose numbers do not depend on this one's. This one goes on as if the other had never been made.
+    #[must_use]
+    pub fn aside(&self) -> Self {
+        let mut other = self.0.clone();
+        other.set_stream(!other.get_stream());
+        Self(other)
+    }
+
     /// A random number of 64 bits.
     pub fn bits(&mut self) -> u64 {
         self.0.next_u64()

@@ -1,6 +1,6 @@
 //! Random scenes: meshes, materials, lights and cameras that renderers get wrong.
 
-use crate::{case::Case, random::Random};
+use crate::{case::Case, colours, random::Random};
 use microphong::Skips;
 use microphong_models::{
     bytes::StreamBytes,
@@ -88,13 +88,18 @@ pub fn drawn(random: &mut Random, mesh: &Mesh, size: [u32; 2], look: &Look) -> O
     Some(styled(random, look.stream(&parts).ok()?, size))
 }
 
-/// A mesh, now and then with coarser levels.
+/// A mesh, now and then with coarser levels, and in a third of all cases with colours at the corners.
 pub fn parts(random: &mut Random, mesh: &Mesh, look: &Look) -> Option<Vec<Part>> {
     let (mut parts, _) = quantise(mesh);
     // Seldom, and of small meshes: to make coarser levels of large ones takes longer than all else.
     if random.once_in(8) && mesh.triangles.len() <= 128 {
         let errors = [(32, 32), (128, 96)].map(|size| look.tolerance(&parts, size));
         levels::add(mesh, &mut parts, &errors, &|| ()).ok()?;
+    }
+    // All else of a scene is the same with colours and without them.
+    let mut aside = random.aside();
+    if aside.once_in(3) {
+        colours::paint(&mut aside, &mut parts);
     }
     Some(parts)
 }
