@@ -81,6 +81,7 @@ fn moved(facet: &Facet, order: [usize; 3], place: impl Fn([f64; 2]) -> [f64; 2])
         vertices: order.map(|k| facet.vertices[k]),
         normals: order.map(|k| facet.normals[k]),
         positions: order.map(|k| facet.positions[k]),
+        albedos: facet.albedos.map(|albedos| order.map(|k| albedos[k])),
         ..facet.clone()
     }
 }

@@ -48,8 +48,8 @@ pub struct Facet {
     pub normals: [V3; 3],
     /// Corners in object space.
     pub positions: [V3; 3],
-    /// Colours of the corners: the part of the ambient and of the diffuse light that is reflected, besides what the material does. `None` if the mesh
-    /// has no colours.
+    /// Colours of the corners: the part of the ambient and of the diffuse light that is reflected, besides what the material does. `None` if no
+    /// mesh of this material has colours; if others have, this one is white.
     pub albedos: Option<[V3; 3]>,
     /// Unit normal of the plane.
     pub plane: V3,
@@ -159,6 +159,21 @@ impl Frame {
 /// The corners of a record in the order of a facet. Streams list corners counter-clockwise.
 const CLOCKWISE: [usize; 3] = [0, 2, 1];
 
+/// Colours of the corners of a triangle; `None` if it has none.
+fn albedos(stream: Stream<'_>, mesh: &record::Mesh, id: u32) -> Option<[V3; 3]> {
+    let Some(MeshColours { palette, corners }) = stream.colours_of(mesh) else {
+        // A material has three channels for all of its meshes, or for none.
+        let shares = |other: &record::Mesh| other.material == mesh.material && stream.colours_of(other).is_some();
+        return stream.meshes.iter().any(shares).then_some([[1.0; 3]; 3]);
+    };
+    let colours = corners.get((id - mesh.first_triangle) as usize)?.colours;
+    let mut albedos = [[0.0; 3]; 3];
+    for (albedo, corner) in albedos.iter_mut().zip(CLOCKWISE) {
+        *albedo = palette.get(usize::from(colours[corner]))?.channels.map(|channel| f64::from(channel) / 255.0);
+    }
+    Some(albedos)
+}
+
 /// A record as a facet on the screen; `None` if it shows its back, is empty there, or has to be clipped.
 fn facet(stream: Stream<'_>, mesh: &record::Mesh, triangle: &record::Triangle, id: u32, view: &View) -> Option<Facet> {
     let vertices = CLOCKWISE.map(|corner| mesh.first_vertex as usize + usize::from(triangle.corners[corner]));
@@ -169,15 +184,6 @@ fn facet(stream: Stream<'_>, mesh: &record::Mesh, triangle: &record::Triangle, i
         let (place, inside) = view.lens.project(view.to_eye(corners[k].position));
         places[k] = inside.then_some(place)?;
     }
-    let albedos = stream.colours_of(mesh).and_then(|MeshColours { palette, corners }| {
-        let colours = corners.get((id - mesh.first_triangle) as usize)?.colours;
-        let mut albedos = [[0.0; 3]; 3];
-        for (albedo, corner) in albedos.iter_mut().zip(CLOCKWISE) {
-            let colour = palette.get(usize::from(colours[corner]))?;
-            *albedo = colour.channels.map(|channel| f64::from(channel) / 255.0);
-        }
-        Some(albedos)
-    });
     let [p, q, r] = places.map(|[x, y, _]| [i64::from(x), i64::from(y)]);
     if (q[0] - p[0]) * (r[1] - p[1]) - (q[1] - p[1]) * (r[0] - p[0]) <= 0 {
         return None;
@@ -189,7 +195,7 @@ fn facet(stream: Stream<'_>, mesh: &record::Mesh, triangle: &record::Triangle, i
         vertices,
         normals: corners.map(|v| real(v.normal, UNIT)),
         positions: corners.map(|v| real(v.position, UNIT)),
-        albedos,
+        albedos: albedos(stream, mesh, id),
         plane: real(triangle.normal, UNIT),
         min_normal_length: f64::from(triangle.min_normal_length) / f64::from(NORMAL_LENGTH).exp2(),
         material: mesh.material.into(),

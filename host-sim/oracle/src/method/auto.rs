@@ -3,6 +3,7 @@
 use super::{Decide, gouraud, six_point, sqrt6};
 use crate::{
     Facet, Frame, Shade,
+    frame::SurfacePoint,
     light::{highlight, phong},
 };
 use microphong_render::choices::{Chosen, Way};
@@ -47,8 +48,8 @@ pub fn chosen<'f>(frame: &'f Frame, facet: &'f Facet, Chosen { way, raises }: Ch
     })
 }
 
-/// One colour: `by_light` from the means of the extremes of cosine and highlight at the corners, and the albedo at the centre; otherwise from the means
-/// of the extremes of the corners' levels.
+/// One colour: `by_light` from the means of the extremes of cosine, highlight and albedo at the corners, otherwise from the means of the extremes of the
+/// corners' levels.
 fn solid<'f>(frame: &'f Frame, facet: &'f Facet, by_light: bool) -> Shade<'f> {
     let middle = |values: [f64; 3]| {
         let [least, most] = [f64::min, f64::max].map(|extreme| values.into_iter().reduce(extreme).unwrap_or(0.0));
@@ -60,7 +61,9 @@ fn solid<'f>(frame: &'f Frame, facet: &'f Facet, by_light: bool) -> Shade<'f> {
             let cosines = Facet::CORNERS.map(|corner| frame.cosines(light, facet.position(corner), facet.node(corner)));
             [middle(cosines.map(|[diffuse, _]| diffuse.max(0.0))), middle(cosines.map(|[_, half]| highlight(half, exponent)))]
         });
-        frame.levels(facet, facet.point(Facet::CENTRE), reflected)
+        let [a, b, c] = Facet::CORNERS.map(|corner| facet.albedo(corner));
+        let albedo = [0, 1, 2].map(|k| middle([a[k], b[k], c[k]]));
+        frame.levels(facet, SurfacePoint { albedo, ..facet.point(Facet::CENTRE) }, reflected)
     } else {
         let [a, b, c] = Facet::CORNERS.map(|corner| frame.node(facet, corner));
         [0, 1, 2].map(|k| middle([a[k], b[k], c[k]]))
