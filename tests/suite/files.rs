@@ -62,6 +62,12 @@ impl Place {
         self.fails(&["convert", file, "-o", "out.tri"])
     }
 
+    /// The colours of all palettes of the last stream.
+    fn palette(&self) -> Vec<[u8; 3]> {
+        let bytes = StreamBytes::read(&self.0.path().join("out.tri")).expect("a stream");
+        bytes.parse().expect("a stream").colours.iter().map(|colour| colour.channels).collect()
+    }
+
     /// The diffuse colours of the last stream.
     fn colours(&self) -> Vec<[f32; 3]> {
         let bytes = StreamBytes::read(&self.0.path().join("out.tri")).expect("a stream");
@@ -333,39 +339,45 @@ fn of_patches(count: usize, library: &str) -> String {
     format!("mtllib {library}\n{CORNERS}{places}usemtl paint\n{}", sides.collect::<String>())
 }
 
-/// The colours of a texture that is a palette, and of vertices, become materials; of many, the most frequent ones stay apart.
+/// The colours of a texture that is a palette, and of vertices, become colours at corners under the material of the file.
 #[test]
 fn faces_have_the_colours_of_textures_and_vertices() {
     let place = Place::new();
     let patches = [[255, 0, 0], [0, 255, 0], [0, 0, 255]];
     place.file("a.mtl", "newmtl paint\nKd 1 1 1\nmap_Kd a.png\n").file("a.png", row_of(&patches)).file("a.obj", of_patches(3, "a.mtl"));
     let said = place.converts(&["a.obj"]);
-    assert!(said.contains("3 materials are made for colours of textures and vertices: no face is farther than 12 of 255"), "{said}");
-    // Equally frequent colours come in the order of their channels.
-    assert_eq!(place.colours(), [[0.0, 0.0, 1.0], [0.0, 1.0, 0.0], [1.0, 0.0, 0.0]]);
-    let said = place.converts(&["a.obj", "--colours", "1"]);
-    assert!(said.contains("1 material is made") && said.contains("6 of 6 faces are farther than 12 of 255"), "{said}");
-    let said = place.converts(&["a.obj", "--colours", "0"]);
+    assert!(said.contains("12 triangles have 3 colours of textures and vertices at the corners: none is farther than 12 of 255"), "{said}");
+    assert!(said.contains("mesh 0: material 0 \"paint\", 12 triangles with 3 colours, 12 of them of one colour"), "{said}");
+    assert_eq!((place.palette(), place.colours()), (patches.to_vec(), vec![[1.0; 3]]));
+    let colours = &place.counts("a.obj")["colours"];
+    assert_eq!(["colours", "palettes", "triangles", "of_one_colour", "split", "far"].map(|field| &colours[field]), [3, 1, 12, 12, 0, 0]);
+    let inspected = String::from_utf8(place.run(&["inspect", "out.tri"]).stdout).expect("text");
+    assert!(inspected.contains("3 colours") && inspected.contains("12 triangles with 3 colours, 12 of them of one colour"), "{inspected}");
+    let said = place.converts(&["a.obj", "--colours", "none"]);
     assert!(said.contains("left out: texture coordinates, textures") && place.colours() == [[1.0; 3]], "{said}");
+    assert!(place.palette().is_empty() && place.counts("a.obj")["colours"] != Value::Null);
     // In JPEG, colours are nearly the same.
     place.file("a.png", include_bytes!("../data/red.jpg"));
     place.converts(&["a.obj"]);
-    let [[red, green, blue]] = place.colours()[..] else { panic!("{:?}", place.colours()) };
-    assert!(red > 0.97 && green < 0.03 && blue < 0.03, "{red} {green} {blue}");
-    // A damaged image and one of another kind are said, and the mesh has its material.
+    let [[red, green, blue]] = place.palette()[..] else { panic!("{:?}", place.palette()) };
+    assert!(red > 247 && green < 8 && blue < 8, "{red} {green} {blue}");
+    // A damaged image and one of another kind are said, and the mesh has its material. Without colours, nobody reads them.
     for (bytes, what) in [(row_of(&patches)[..40].to_vec(), "the image is damaged"), (b"GIF89a".to_vec(), "neither PNG nor JPEG")] {
         let said = place.file("a.png", bytes).converts(&["a.obj"]);
         assert!(said.contains("the texture a.png is left out: ") && said.contains(what) && place.colours() == [[1.0; 3]], "{said}");
+        assert!(!place.converts(&["a.obj", "--colours", "none"]).contains(what));
     }
+    // One colour for the whole mesh takes the place of all.
+    place.file("a.png", row_of(&patches)).converts(&["a.obj", "--colour", "00ff00", "--diffuse", "1"]);
+    assert!(place.palette().is_empty() && place.colours() == [[0.0, 1.0, 0.0]]);
     // One dark vertex does not change what is full.
     let of_bytes: String =
         CORNERS.lines().enumerate().map(|(k, line)| format!("{line} {}\n", if k == 0 { "1 1 1" } else { "0 128 255" })).collect();
     place.file("c.obj", of_bytes + &SIDES.concat()).converts(&["c.obj"]);
-    assert!(place.colours().iter().all(|[red, ..]| *red < 0.01), "{:?}", place.colours());
+    assert_eq!(place.palette(), [[0, 128, 255], [1; 3]]);
     let coloured: String = CORNERS.lines().map(|line| format!("{line} 0 0.5 1\n")).collect();
-    place.file("b.obj", coloured + &SIDES.concat()).converts(&["b.obj"]);
-    let [[red, green, blue]] = place.colours()[..] else { panic!("{:?}", place.colours()) };
-    assert!(red == 0.0 && (green - 0.5).abs() < 0.01 && blue == 1.0, "{red} {green} {blue}");
+    let said = place.file("b.obj", coloured + &SIDES.concat()).converts(&["b.obj"]);
+    assert!(place.palette() == [[0, 128, 255]] && place.colours() == [[1.0; 3]] && !said.contains("from the file\n"), "{said}");
     let vertices: String = CORNERS.lines().map(|line| format!("{} 0 128 255\n", &line[2..])).collect();
     let faces: String = SIDES
         .iter()
@@ -376,7 +388,25 @@ fn faces_have_the_colours_of_textures_and_vertices() {
         .collect();
     let head = "ply\nformat ascii 1.0\nelement vertex 8\nproperty float x\nproperty float y\nproperty float z\nproperty uchar red\nproperty uchar green\nproperty uchar blue\nelement face 6\nproperty list uchar int vertex_indices\nend_header\n";
     place.file("b.ply", format!("{head}{vertices}{faces}")).converts(&["b.ply"]);
-    assert_eq!(place.colours(), [[red, green, blue]]);
+    assert_eq!(place.palette(), [[0, 128, 255]]);
+    // A scene of several models has the palettes of all, and a mesh that the scene gives a colour has none.
+    let mesh = |name: &str, file: &str, more: &str| {
+        format!("[[mesh]]\nname = \"{name}\"\nfile = \"{file}\"\n{more}[[object]]\nmesh = \"{name}\"\n")
+    };
+    let meshes = [
+        mesh("a", "a.obj", ""),
+        mesh("b", "b.ply", ""),
+        mesh("c", "c.obj", "colour = \"ff0000\"\n"),
+        mesh("d", "a.obj", "size = [0.5, 1, 1]\n"),
+    ];
+    place.file("a.toml", format!("frames = 1\n[camera]\nat = [0, 0, 5]\n{}", meshes.concat())).converts(&["a.toml"]);
+    let bytes = StreamBytes::read(&place.0.path().join("out.tri")).expect("a stream");
+    let stream = bytes.parse().expect("a stream");
+    let of = |mesh| stream.colours_of(mesh).map(|colours| colours.palette[usize::from(colours.corners[0].colours[0])].channels);
+    let seen: Vec<_> = stream.meshes.iter().map(of).collect();
+    assert_eq!(seen, [Some(patches[0]), Some([0, 128, 255]), None, Some(patches[0])]);
+    // Equal palettes are one.
+    assert!(stream.colours.len() == 17 && stream.meshes[0].palette == stream.meshes[3].palette && stream.materials.len() == 4);
 }
 
 /// Colours of glTF: a texture that its transform moves, times colours of vertices, which are linear.
@@ -415,7 +445,7 @@ fn gltf_has_the_colours_of_textures_and_vertices() {
     let chunks = [chunk(b"JSON", text.as_bytes()), chunk(b"BIN\0", &bytes)].concat();
     let glb = [&b"glTF"[..], &2u32.to_le_bytes(), &(12 + chunks.len() as u32).to_le_bytes(), &chunks].concat();
     let said = place.file("a.glb", glb).converts(&["a.glb"]);
-    assert!(said.contains("1 material is made for colours of textures") && !said.contains("left out"), "{said}");
-    let [[red, green, blue]] = place.colours()[..] else { panic!("{:?}", place.colours()) };
-    assert!(red == 0.0 && (green - 0.5).abs() < 0.01 && blue == 1.0, "{red} {green} {blue}");
+    assert!(said.contains("1 triangle has 1 colour of textures and vertices") && !said.contains("left out"), "{said}");
+    let [[0, 127..=128, 255]] = place.palette()[..] else { panic!("{:?}", place.palette()) };
+    assert_eq!(place.colours(), [[1.0; 3]]);
 }

@@ -9,6 +9,7 @@ mod pose;
 use crate::{
     faults::{Faults, UNUSED_NORMAL, UNUSED_POSITION},
     files::Folder,
+    import::Colours,
     mesh::{Corner, Face, Smoothing, Soup, Submesh},
     mtl::Material,
     obj::LARGEST,
@@ -48,7 +49,7 @@ pub struct Scene {
 ///
 /// # Errors
 /// The error names the buffer, mesh or node, and its fault.
-pub(crate) fn parse(bytes: &[u8], folder: &Folder) -> Result<Scene> {
+pub(crate) fn parse(bytes: &[u8], folder: &Folder, colours: Colours) -> Result<Scene> {
     let (document, blob) = document::open(bytes)?;
     let scene = document.default_scene().or_else(|| document.scenes().next()).context("glTF: it has no scene; export it with one")?;
     let bytes = Bytes::read(&document, blob, folder)?;
@@ -59,6 +60,7 @@ pub(crate) fn parse(bytes: &[u8], folder: &Folder) -> Result<Scene> {
         numbers: Vec::new(),
         folder,
         images: Images::default(),
+        colours,
     };
     let places = pose::of_nodes(&document);
     let mut seen = HashSet::new();
@@ -129,6 +131,8 @@ struct Reader<'a> {
     folder: &'a Folder,
     /// Images by their numbers in the file.
     images: Images,
+    /// What becomes of colours: images are read only if they are needed.
+    colours: Colours,
 }
 
 impl Reader<'_> {
@@ -256,7 +260,11 @@ impl Reader<'_> {
                 Some(gloss) => pbr::of_gloss(name(), gloss.diffuse_factor(), gloss.specular_factor(), gloss.glossiness_factor()),
                 None => pbr::material(name(), pbr.base_color_factor(), pbr.metallic_factor(), pbr.roughness_factor()),
             }));
-            let texture = colour_texture(&material).and_then(|info| self.texture(&info));
+            let texture = colour_texture(&material);
+            if self.colours == Colours::None && texture.is_some() {
+                self.scene.ignored.insert("textures");
+            }
+            let texture = texture.filter(|_| self.colours == Colours::Corners).and_then(|info| self.texture(&info));
             self.scene.textures.push(texture);
             let has_texture = gloss.is_some_and(|gloss| gloss.specular_glossiness_texture().is_some())
                 || pbr.metallic_roughness_texture().is_some()

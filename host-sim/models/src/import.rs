@@ -10,7 +10,7 @@ use crate::{
     mtl, names,
     number::grouped,
     obj::{self, Obj},
-    paint,
+    paint::{self, Painted},
     ply::{self, Ply},
     stl::{self, Stl},
     text,
@@ -34,6 +34,8 @@ pub struct Imported {
     pub faults: Vec<String>,
     /// Remarks on the file for the user, in sentences; those on wrong elements are among them.
     pub remarks: Vec<String>,
+    /// The colours that triangles have at their corners.
+    pub painted: Painted,
 }
 
 /// Converts the materials of a mesh to those of a stream, under ambient light from 0 to 1. Values that the file does not define are taken from
@@ -44,22 +46,37 @@ pub fn surfaces(materials: &[Option<mtl::Material>], other: &Surface, ambient_li
 }
 
 /// What is passed of a file, beyond what is right.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub struct Rules {
     /// Wrong elements are errors, even if the rest of the mesh can be drawn without them.
     pub strict: bool,
     /// A model may name files outside its folder.
     pub allow_outside: bool,
-    /// Largest number of materials that are made for the colours of textures and vertices; 0 leaves these colours out.
-    pub colours: usize,
+    /// What becomes of the colours of textures and vertices.
+    pub colours: Colours,
 }
 
-/// The default of [`Rules::colours`].
-pub const COLOURS: usize = 32;
+/// What becomes of the colours that a file has in textures and at its vertices.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+pub enum Colours {
+    /// They are left out, and images are not read.
+    None,
+    /// Triangles have colours at their corners.
+    #[default]
+    Corners,
+}
 
-impl Default for Rules {
-    fn default() -> Self {
-        Self { strict: false, allow_outside: false, colours: COLOURS }
+impl Colours {
+    /// All of them.
+    pub const ALL: [Self; 2] = [Self::None, Self::Corners];
+
+    /// The name on the command line.
+    #[must_use]
+    pub const fn name(self) -> &'static str {
+        match self {
+            Self::None => "none",
+            Self::Corners => "corners",
+        }
     }
 }
 
@@ -91,16 +108,19 @@ pub fn file(path: &Path, weld: Weld) -> Result<Imported> {
 pub fn file_by(path: &Path, weld: Weld, rules: Rules) -> Result<Imported> {
     let place = || path.display().to_string();
     let folder = Folder::of(path, rules.allow_outside);
-    let Contents { mut soup, objects, mut materials, textures, mut ignored, mut faults, mut remarks } =
-        contents(path, &files::read(path)?, &folder)?;
-    let painted = paint::paint(&mut soup, &mut materials, &textures, rules.colours);
+    let Contents { soup, objects, mut materials, textures, mut ignored, mut faults, mut remarks } =
+        contents(path, &files::read(path)?, &folder, rules.colours)?;
+    let (mut mesh, sources, report) = mesh::weld_with_sources(&soup, weld).with_context(place)?;
+    let painted = match rules.colours {
+        Colours::Corners => paint::paint(&mut mesh, sources, &soup, &mut materials, &textures),
+        Colours::None => Painted::default(),
+    };
     remarks.extend(painted.sentence());
-    if painted.faces == 0 {
+    if painted.triangles == 0 {
         ignored.extend((!soup.colours.is_empty()).then_some("colours of vertices"));
         ignored.extend(textures.iter().any(Option::is_some).then_some("textures"));
         ignored.extend((!soup.places.is_empty()).then_some("texture coordinates"));
     }
-    let (mesh, report) = mesh::weld(&soup, weld).with_context(place)?;
     faults.add_several(COMPUTED_NORMAL, report.computed_normals, || format!("face {}", report.first_computed));
     faults.add_several(TURNED, report.mended, || format!("face {}", report.first_mended));
     if report.missing_normals > 0 {
@@ -116,11 +136,11 @@ pub fn file_by(path: &Path, weld: Weld, rules: Rules) -> Result<Imported> {
         remarks.push(format!("left out: {}", ignored.into_iter().collect::<Vec<_>>().join(", ")));
     }
     let objects = names::distinct(objects, &mut remarks);
-    Ok(Imported { mesh, report, objects, materials, faults, remarks })
+    Ok(Imported { mesh, report, objects, materials, faults, remarks, painted })
 }
 
 /// Chooses the reader by how the file begins, or where that says nothing, by the ending of its name.
-fn contents(path: &Path, bytes: &[u8], folder: &Folder) -> Result<Contents> {
+fn contents(path: &Path, bytes: &[u8], folder: &Folder, colours: Colours) -> Result<Contents> {
     let place = || path.display().to_string();
     let ends = |ending| path.extension().is_some_and(|e| e.eq_ignore_ascii_case(ending));
     let plain = Contents { materials: vec![None], ..Contents::default() };
@@ -132,7 +152,7 @@ fn contents(path: &Path, bytes: &[u8], folder: &Folder) -> Result<Contents> {
     }
     if gltf::is_gltf(bytes) || ends("gltf") || ends("glb") {
         let gltf::Scene { soup, objects, materials, textures, ignored, faults, remarks } =
-            gltf::parse(bytes, folder).with_context(place)?;
+            gltf::parse(bytes, folder, colours).with_context(place)?;
         return Ok(Contents { soup, objects, materials, textures, ignored, faults, remarks });
     }
     foreign::refuse_ending(path)?;
@@ -145,11 +165,11 @@ fn contents(path: &Path, bytes: &[u8], folder: &Folder) -> Result<Contents> {
         let what = if bytes.is_empty() { "the file is empty" } else { "nothing in the file is OBJ, glTF, STL or PLY" };
         bail!("{}: the mesh has no faces, because {what}; export it as one of OBJ, glTF, STL and PLY", place());
     }
-    with_libraries(folder, obj).with_context(place)
+    with_libraries(folder, obj, colours).with_context(place)
 }
 
 /// An OBJ file with the materials of the files that it names.
-fn with_libraries(folder: &Folder, obj: Obj) -> Result<Contents> {
+fn with_libraries(folder: &Folder, obj: Obj, colours: Colours) -> Result<Contents> {
     let Obj { soup, objects, materials: names, libraries, mut ignored, faults, mut remarks } = obj;
     let mut known = Vec::new();
     if names.iter().any(Option::is_some) {
@@ -184,7 +204,14 @@ fn with_libraries(folder: &Folder, obj: Obj) -> Result<Contents> {
         remarks.push(format!("materials that no file defines have the colour of the command line: {}", unknown.join(", ")));
     }
     let images = &mut Images::default();
-    let textures = materials.iter().map(|material| texture(material.as_ref()?.texture.as_ref()?, images, folder, &mut remarks)).collect();
+    let named = || materials.iter().map(|material| material.as_ref()?.texture.as_ref());
+    let textures = match colours {
+        Colours::Corners => named().map(|name| texture(name?, images, folder, &mut remarks)).collect(),
+        Colours::None => {
+            ignored.extend(named().any(|name| name.is_some()).then_some("textures"));
+            Vec::new()
+        }
+    };
     Ok(Contents { soup, objects, materials, textures, ignored, faults, remarks })
 }
 

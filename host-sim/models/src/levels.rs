@@ -6,8 +6,9 @@
 use crate::{
     convex::is_closed_convex,
     distance::{Corners, hausdorff},
-    mesh::Mesh,
+    mesh::{Mesh, Rgb},
     number::above,
+    palette::distance,
     quantise::{self, Part},
     records,
 };
@@ -20,7 +21,7 @@ use microphong::{
     geometry::detail::stream_tolerance,
     stream::record::{self, Triangle, Vertex},
 };
-use std::{collections::HashMap, iter};
+use std::{collections::HashMap, iter, mem};
 
 /// A coarser level of a part.
 #[derive(Clone, Debug)]
@@ -39,7 +40,11 @@ pub struct Level {
 const GAIN: f64 = 0.9;
 /// Weight of the difference of unit normals beside distances. Of two collapses at equal distance the one is taken that changes light less. Ten times
 /// this weight takes a third more triangles for the same error.
-const NORMALS: [f32; 3] = [0.05; 3];
+const NORMALS: f32 = 0.05;
+/// Weight of the difference of colours beside distances.
+const COLOURS: f32 = 0.05;
+/// Colours of corners at a vertex that differ by more than this, of 255, have a border between them. Others become one colour when a mesh is simplified.
+const BORDER: u8 = 12;
 
 /// Gives each part of a mesh a coarser level for each of some errors, of the fewest triangles that keep to it.
 ///
@@ -59,10 +64,10 @@ pub fn add(mesh: &Mesh, parts: &mut [Part], errors: &[GeometricError], tick: &dy
                 part.coarser.last().map_or((part.triangles.len(), GeometricError::ZERO), |last| (last.triangles.len(), last.error));
             let found = fewest(part, finer, error, options)?;
             tick();
-            let Some((triangles, error)) = found else { continue };
+            let Some((Coarse { triangles, colours }, error)) = found else { continue };
             if error > least && triangles.len() as f64 <= GAIN * finer as f64 {
                 let closed_convex = is_convex(mesh, part, &triangles);
-                part.coarser.push(Level { triangles, colours: Vec::new(), error, closed_convex });
+                part.coarser.push(Level { triangles, colours, error, closed_convex });
             }
         }
     }
@@ -86,14 +91,14 @@ fn borders(parts: &[Part]) -> Vec<SimplifyOptions> {
 }
 
 /// About as few triangles, up to `most`, as lie within `error` of a part, and the error that they have; `None` if there are none.
-fn fewest(part: &Part, most: usize, error: GeometricError, options: SimplifyOptions) -> Result<Option<(Vec<Triangle>, GeometricError)>> {
+fn fewest(part: &Part, most: usize, error: GeometricError, options: SimplifyOptions) -> Result<Option<(Coarse, GeometricError)>> {
     let surface = corners(&part.vertices, &part.triangles);
     let (mut too_few, mut enough, mut found) = (0, most, None);
     while enough - too_few > 1 + enough / 64 {
         let target = too_few.midpoint(enough);
-        let triangles: Vec<_> =
-            simplified(part, target, options)?.into_iter().filter_map(|corners| quantise::record(&part.vertices, corners)).collect();
-        let apart = hausdorff(&surface, &corners(&part.vertices, &triangles), [0.25, 1.0].map(|share| share * f64::from(error)));
+        let coarse = simplified(part, target, options)?;
+        let triangles = &coarse.triangles;
+        let apart = hausdorff(&surface, &corners(&part.vertices, triangles), [0.25, 1.0].map(|share| share * f64::from(error)));
         let apart = apart.filter(|_| !triangles.is_empty());
         let Some(apart) = apart else {
             too_few = target;
@@ -102,7 +107,7 @@ fn fewest(part: &Part, most: usize, error: GeometricError, options: SimplifyOpti
         // There may be more than asked for: then there cannot be fewer.
         (too_few, enough) = (if triangles.len() > target { target } else { too_few }, target);
         // Never 0, which is the error of the mesh as it is.
-        found = Some((triangles, above(apart)));
+        found = Some((coarse, above(apart)));
     }
     Ok(found)
 }
@@ -161,19 +166,24 @@ pub fn reduced(mesh: &Mesh, parts: &[Part], most: usize) -> Result<Vec<Part>> {
     let reduce = |(part, options): (&Part, SimplifyOptions)| {
         // Each part has its share, which may be less than it can be made of.
         let share = (part.triangles.len() as u64 * most as u64 / before as u64) as usize;
-        let triangles: Vec<_> =
-            simplified(part, share, options)?.into_iter().filter_map(|corners| quantise::record(&part.vertices, corners)).collect();
-        let mut part = Part { closed_convex: is_convex(mesh, part, &triangles), triangles, ..part.clone() };
+        let Coarse { triangles, colours } = simplified(part, share, options)?;
+        let mut part = Part { closed_convex: is_convex(mesh, part, &triangles), triangles, colours, ..part.clone() };
         drop_unused(&mut part);
         Ok(part)
     };
     let parts = parts.iter().zip(borders).map(reduce).collect::<Result<Vec<_>>>()?;
     let after = count(&parts);
     if after > most {
-        let borders = if parts.len() > 1 {
-            ", because borders between materials and between objects stay as they are; give more, or one --colour and --merge"
-        } else {
-            "; give more"
+        let has_colours = parts.iter().any(|part| !part.palette.is_empty());
+        let borders = match (parts.len() > 1, has_colours) {
+            (true, true) => {
+                ", because borders between colours, materials and objects stay as they are; give more, or one --colour and --merge"
+            }
+            (true, false) => {
+                ", because borders between materials and between objects stay as they are; give more, or one --colour and --merge"
+            }
+            (false, true) => ", because borders between colours stay as they are; give more, or leave colours out by --colours none",
+            (false, false) => "; give more",
         };
         bail!("the mesh cannot be made of {most} triangles, but of {after}{borders}");
     }
@@ -208,19 +218,114 @@ pub fn drawn<'a>(stream: &Stream<'a>, size: Size) -> impl DoubleEndedIterator<It
     stream.meshes_within(stream_tolerance(stream.header, size))
 }
 
-/// About `target` triangles on vertices of `part`, as corners.
-fn simplified(part: &Part, target: usize, options: SimplifyOptions) -> Result<Vec<[u16; 3]>> {
+/// Triangles on vertices of a part.
+struct Coarse {
+    triangles: Vec<Triangle>,
+    /// The colours of their corners; empty if corners have none.
+    colours: Vec<[u8; 3]>,
+}
+
+/// About `target` triangles on vertices of `part`.
+fn simplified(part: &Part, target: usize, options: SimplifyOptions) -> Result<Coarse> {
     let refused = |error| anyhow!("the mesh cannot be simplified: {error}");
-    let indices: Vec<u32> = part.triangles.iter().flat_map(|triangle| triangle.corners.map(u32::from)).collect();
-    let positions: Vec<[f32; 3]> = part.vertices.iter().map(|vertex| records::position(vertex).map(f32::from)).collect();
-    let normals: Vec<f32> = part.vertices.iter().flat_map(|vertex| records::normal(vertex).map(f32::from)).collect();
+    let Wedges { wedges, corners } = Wedges::of(part);
+    let vertices = || wedges.iter().map(|wedge| &part.vertices[usize::from(wedge.vertex)]);
+    let positions: Vec<[f32; 3]> = vertices().map(|vertex| records::position(vertex).map(f32::from)).collect();
+    let normals = vertices().map(|vertex| records::normal(vertex).map(f32::from));
+    let colours = || wedges.iter().map(|wedge| part.palette[usize::from(wedge.colour)].map(|c| f32::from(c) / 255.0));
+    let (attributes, weights): (Vec<f32>, _) = if part.palette.is_empty() {
+        (normals.flatten().collect(), vec![NORMALS; 3])
+    } else {
+        (
+            normals.zip(colours()).flat_map(|(normal, colour)| normal.into_iter().chain(colour)).collect(),
+            [[NORMALS; 3], [COLOURS; 3]].concat(),
+        )
+    };
     let positions = Positions::from_packed(&positions);
-    let normals = Attributes::from_interleaved(&normals, part.vertices.len(), NORMALS.len(), NORMALS.len(), 0).map_err(refused)?;
+    let attributes = Attributes::from_interleaved(&attributes, wedges.len(), weights.len(), weights.len(), 0).map_err(refused)?;
     // The error is one that no mesh has: the number of triangles decides.
     let settings = SimplifySettings { target_index_count: 3 * target, target_error: 1e6, options };
-    let mesh =
-        simplify_with_attributes(&indices, positions, normals, &NORMALS, None, settings, &mut Workspace::default()).map_err(refused)?;
-    Ok(mesh.indices.chunks_exact(3).map(|corners| [0, 1, 2].map(|k| corners[k] as u16)).collect())
+    let mesh = simplify_with_attributes(&corners, positions, attributes, &weights, None, settings, &mut Workspace::default());
+    let mut coarse = Coarse { triangles: Vec::new(), colours: Vec::new() };
+    for corners in mesh.map_err(refused)?.indices.as_chunks::<3>().0 {
+        let corners = corners.map(|corner| wedges[corner as usize]);
+        let Some(triangle) = quantise::record(&part.vertices, corners.map(|wedge| wedge.vertex)) else { continue };
+        coarse.triangles.push(triangle);
+        if !part.palette.is_empty() {
+            coarse.colours.push(corners.map(|wedge| wedge.colour));
+        }
+    }
+    Ok(coarse)
+}
+
+/// A vertex, as the triangles around it that have one colour there see it.
+#[derive(Clone, Copy)]
+struct Wedge {
+    vertex: u16,
+    /// The colour as an index of the palette; 0 if corners have none.
+    colour: u8,
+}
+
+/// The vertices of a part for each of their colours. The simplifier keeps borders between wedges of one vertex.
+struct Wedges {
+    wedges: Vec<Wedge>,
+    /// The wedge at each corner of all triangles.
+    corners: Vec<u32>,
+}
+
+impl Wedges {
+    fn of(part: &Part) -> Self {
+        let vertices = part.triangles.iter().flat_map(|triangle| triangle.corners);
+        if part.palette.is_empty() {
+            let wedges = (0..part.vertices.len() as u16).map(|vertex| Wedge { vertex, colour: 0 }).collect();
+            return Self { wedges, corners: vertices.map(u32::from).collect() };
+        }
+        let mut groups: Vec<Vec<Group>> = vec![Vec::new(); part.vertices.len()];
+        let corners: Vec<(u16, usize)> = vertices
+            .zip(part.colours.iter().flatten())
+            .map(|(vertex, &colour)| {
+                let (groups, colour) = (&mut groups[usize::from(vertex)], part.palette[usize::from(colour)]);
+                let known = groups.iter().position(|group| distance(group.first, colour) <= BORDER);
+                let number = known.unwrap_or_else(|| {
+                    groups.push(Group { first: colour, sum: [0; 3], corners: 0 });
+                    groups.len() - 1
+                });
+                groups[number].add(colour);
+                (vertex, number)
+            })
+            .collect();
+        let first = groups.iter().scan(0, |count, groups| Some(mem::replace(count, *count + groups.len() as u32))).collect::<Vec<_>>();
+        let colour = |group: &Group| nearest(&part.palette, group.mean());
+        let wedges = (0..).zip(&groups).flat_map(|(vertex, groups)| groups.iter().map(move |group| (vertex, group)));
+        Self {
+            wedges: wedges.map(|(vertex, group)| Wedge { vertex, colour: colour(group) }).collect(),
+            corners: corners.into_iter().map(|(vertex, number)| first[usize::from(vertex)] + number as u32).collect(),
+        }
+    }
+}
+
+/// Colours of corners at a vertex without a border between them.
+#[derive(Clone)]
+struct Group {
+    first: Rgb,
+    sum: [u32; 3],
+    corners: u32,
+}
+
+impl Group {
+    fn add(&mut self, colour: Rgb) {
+        self.corners += 1;
+        self.sum.iter_mut().zip(colour).for_each(|(sum, c)| *sum += u32::from(c));
+    }
+
+    fn mean(&self) -> Rgb {
+        self.sum.map(|sum| ((sum + self.corners / 2) / self.corners) as u8)
+    }
+}
+
+fn nearest(palette: &[Rgb], colour: Rgb) -> u8 {
+    let nearest = (0..=u8::MAX).zip(palette).min_by_key(|(_, other)| distance(**other, colour));
+    nearest.map_or(0, |(number, _)| number)
 }
 
 fn corners(vertices: &[Vertex], triangles: &[Triangle]) -> Vec<Corners> {

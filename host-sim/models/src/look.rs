@@ -338,7 +338,7 @@ fn palettes(parts: &[Part]) -> Result<(Vec<u8>, Vec<Colour>)> {
             colours.resize(next * PALETTE, BLACK);
             colours.extend(part.palette.iter().map(|&channels| Colour { channels, unused: 0 }));
         }
-        u8::try_from(number).context("too many colours for one stream; take fewer by --colours")
+        u8::try_from(number).context("too many colours for one stream; give some meshes one colour, or leave colours out")
     };
     let numbers = parts.iter().map(&mut number).collect::<Result<_>>()?;
     Ok((numbers, colours))

@@ -85,6 +85,22 @@ pub struct Mesh {
     pub triangles: Vec<[usize; 3]>,
     /// Object and material of each triangle. If this is empty, all triangles belong to the first object and material.
     pub submeshes: Vec<Submesh>,
+    /// Colours at the corners of each triangle, where it has some. If this is empty, no triangle has any.
+    pub colours: Vec<Option<Coloured>>,
+    /// The colours by which `colours` counts.
+    pub palettes: Vec<Vec<Rgb>>,
+}
+
+/// A colour of sRGB with 8 bits a channel.
+pub type Rgb = [u8; 3];
+
+/// The colours at the corners of a triangle.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub struct Coloured {
+    /// Number of the palette.
+    pub palette: u16,
+    /// The colour of each corner as an index of the palette.
+    pub colours: [u8; 3],
 }
 
 impl Mesh {
@@ -94,14 +110,32 @@ impl Mesh {
         self.submeshes.get(triangle).copied().unwrap_or_default()
     }
 
+    /// The colours at the corners of a triangle, if it has some.
+    #[must_use]
+    pub fn coloured(&self, triangle: usize) -> Option<Coloured> {
+        self.colours.get(triangle).copied().flatten()
+    }
+
+    /// The number of each vertex's position, which vertices at one position have in common.
+    pub(crate) fn places(&self) -> Vec<usize> {
+        let mut known: HashMap<[u64; 3], usize> = HashMap::new();
+        let number = |p: &V3| {
+            let next = known.len();
+            *known.entry(p.map(f64::to_bits)).or_insert(next)
+        };
+        self.positions.iter().map(number).collect()
+    }
+
     /// Makes one object of all.
     pub fn merge_objects(&mut self) {
         self.submeshes.iter_mut().for_each(|submesh| submesh.object = 0);
     }
 
-    /// Gives all objects one material.
+    /// Gives all objects one material, and removes the colours of corners.
     pub fn merge_materials(&mut self) {
         self.submeshes.iter_mut().for_each(|submesh| submesh.material = 0);
+        self.colours.clear();
+        self.palettes.clear();
     }
 }
 
@@ -166,11 +200,37 @@ const SMALLEST: f64 = 1e-100;
 /// A smaller share of the distance from the origin has too few of the 53 bits of a coordinate left for the 15 of a stream.
 const FARTHEST: f64 = 1e-11;
 
+/// Where the colour of a corner stands in a [`Soup`].
+#[derive(Clone, Copy, Debug)]
+pub(crate) struct Source {
+    /// Index of its colour.
+    pub(crate) colour: Option<u32>,
+    /// Index of its place on the texture.
+    pub(crate) place: Option<u32>,
+}
+
+/// The triangles of a mesh while it is made.
+#[derive(Default)]
+struct Draft {
+    mesh: Mesh,
+    /// The sources of the colours of each triangle; empty if the soup has none.
+    sources: Vec<[Source; 3]>,
+}
+
 /// Welds, computes missing normals, cuts polygons into triangles, centres and scales to a sphere of radius 1.
 ///
 /// # Errors
 /// When nothing is left to draw.
-pub fn weld(soup: &Soup, Weld { turn, crease }: Weld) -> Result<(Mesh, Report)> {
+pub fn weld(soup: &Soup, weld: Weld) -> Result<(Mesh, Report)> {
+    let (mesh, _, report) = weld_with_sources(soup, weld)?;
+    Ok((mesh, report))
+}
+
+/// Makes a mesh as [`weld`] does. Also returns the sources of the colours of each triangle; none if the soup has no colours.
+///
+/// # Errors
+/// When nothing is left to draw.
+pub(crate) fn weld_with_sources(soup: &Soup, Weld { turn, crease }: Weld) -> Result<(Mesh, Vec<[Source; 3]>, Report)> {
     if soup.faces.is_empty() {
         bail!("the mesh has no faces; export it with polygons");
     }
@@ -180,15 +240,16 @@ pub fn weld(soup: &Soup, Weld { turn, crease }: Weld) -> Result<(Mesh, Report)> 
     let soup = &*mended(soup, &positions, &places, &mut report);
     let mut normals = with_direction(soup);
     report.own_normals = normals.iter().filter(|normal| normal.is_some()).count() * 2 >= normals.len();
-    let (mut mesh, crossed) = if report.own_normals {
+    let (mut draft, crossed) = if report.own_normals {
         complete(&mut normals, soup, &positions, &places, crease, &mut report);
         with_own_normals(soup, &positions, &places, &normals)
     } else {
         smooth(soup, &positions, &places, crease)
     };
     report.crossed = crossed;
-    let before = mesh.triangles.len();
-    drop_degenerate(&mut mesh);
+    let before = draft.mesh.triangles.len();
+    drop_degenerate(&mut draft);
+    let Draft { mut mesh, mut sources } = draft;
     report.degenerate = before - mesh.triangles.len();
     if mesh.triangles.is_empty() {
         bail!("all {before} triangles are degenerate (no area); nothing is left to draw");
@@ -196,6 +257,7 @@ pub fn weld(soup: &Soup, Weld { turn, crease }: Weld) -> Result<(Mesh, Report)> 
     let inside_out = is_closed(&mesh) && volume(&mesh) < 0.0;
     if inside_out != turn {
         mesh.triangles.iter_mut().for_each(|t| t.swap(1, 2));
+        sources.iter_mut().for_each(|sources| sources.swap(1, 2));
         // Normals from a file are right already when only the winding is wrong.
         if !report.own_normals {
             mesh.normals.iter_mut().for_each(|n| *n = scale(*n, -1.0));
@@ -206,7 +268,7 @@ pub fn weld(soup: &Soup, Weld { turn, crease }: Weld) -> Result<(Mesh, Report)> 
     if report.own_normals {
         report.backward_normals = mesh.triangles.iter().filter(|triangle| is_backward(&mesh, triangle)).count();
     }
-    Ok((mesh, report))
+    Ok((mesh, sources, report))
 }
 
 /// Whether the normals of a triangle point to its back, and not only to the side.
@@ -350,9 +412,9 @@ fn direction(sheet: &[Around], areas: &[V3]) -> V3 {
 }
 
 /// Also counts polygons that cross themselves. Each corner has one of `normals`, in the order of faces.
-fn with_own_normals(soup: &Soup, positions: &[V3], places: &[usize], normals: &[Option<V3>]) -> (Mesh, usize) {
+fn with_own_normals(soup: &Soup, positions: &[V3], places: &[usize], normals: &[Option<V3>]) -> (Draft, usize) {
     let mut crossed = 0;
-    let mut mesh = Mesh::default();
+    let mut draft = Draft::default();
     let mut vertices: HashMap<(usize, [i32; 3]), usize> = HashMap::new();
     let mut normals = normals.iter();
     for face in &soup.faces {
@@ -365,6 +427,7 @@ fn with_own_normals(soup: &Soup, positions: &[V3], places: &[usize], normals: &[
                 let normal = normal.unwrap_or([0.0, 0.0, 1.0]);
                 // Finer than a stream keeps them: equal keys become equal normals.
                 let key = normal.map(|c| (c * 65536.0).round() as i32);
+                let mesh = &mut draft.mesh;
                 *vertices.entry((place, key)).or_insert_with(|| {
                     mesh.positions.push(positions[place]);
                     mesh.normals.push(normal);
@@ -372,17 +435,22 @@ fn with_own_normals(soup: &Soup, positions: &[V3], places: &[usize], normals: &[
                 })
             })
             .collect();
-        crossed += usize::from(push(&mut mesh, face, &corners));
+        crossed += usize::from(push(&mut draft, soup, face, &corners));
     }
-    (mesh, crossed)
+    (draft, crossed)
 }
 
 /// Adds a polygon on these vertices; whether it crosses itself.
-fn push(mesh: &mut Mesh, face: &Face, vertices: &[usize]) -> bool {
+fn push(Draft { mesh, sources }: &mut Draft, soup: &Soup, face: &Face, vertices: &[usize]) -> bool {
     let points: Vec<V3> = vertices.iter().map(|&v| mesh.positions[v]).collect();
     let cut = cut(&points);
     mesh.submeshes.extend(cut.triangles.iter().map(|_| face.submesh));
     mesh.triangles.extend(cut.triangles.iter().map(|t| t.map(|k| vertices[k])));
+    if !soup.colours.is_empty() || !soup.places.is_empty() {
+        let narrow = |index: Option<usize>| index.and_then(|index| u32::try_from(index).ok());
+        let source = |corner: &Corner| Source { colour: narrow(corner.colour), place: narrow(corner.place) };
+        sources.extend(cut.triangles.iter().map(|t| t.map(|k| source(&face.corners[k]))));
+    }
     cut.crossed
 }
 
@@ -391,7 +459,7 @@ type Around = (usize, usize, Option<V3>);
 
 /// Computes one normal for all faces around a position between which light is smooth: the sum of their area vectors. Also counts polygons that cross
 /// themselves.
-fn smooth(soup: &Soup, positions: &[V3], places: &[usize], crease: f64) -> (Mesh, usize) {
+fn smooth(soup: &Soup, positions: &[V3], places: &[usize], crease: f64) -> (Draft, usize) {
     let areas = areas(soup, positions, places);
     let mut around: Vec<Vec<Around>> = vec![Vec::new(); positions.len()];
     for (number, face) in soup.faces.iter().enumerate() {
@@ -399,7 +467,8 @@ fn smooth(soup: &Soup, positions: &[V3], places: &[usize], crease: f64) -> (Mesh
             around[places[corner.position]].push((number, k, unit(areas[number])));
         }
     }
-    let mut mesh = Mesh::default();
+    let mut draft = Draft::default();
+    let mesh = &mut draft.mesh;
     let mut vertices: Vec<Vec<usize>> = soup.faces.iter().map(|face| vec![0; face.corners.len()]).collect();
     for (place, mut left) in around.into_iter().enumerate() {
         while !left.is_empty() {
@@ -412,8 +481,8 @@ fn smooth(soup: &Soup, positions: &[V3], places: &[usize], crease: f64) -> (Mesh
             mesh.normals.push(normal);
         }
     }
-    let crossed = soup.faces.iter().zip(&vertices).filter(|(face, vertices)| push(&mut mesh, face, vertices)).count();
-    (mesh, crossed)
+    let crossed = soup.faces.iter().zip(&vertices).filter(|(face, vertices)| push(&mut draft, soup, face, vertices)).count();
+    (draft, crossed)
 }
 
 /// Takes the first corner out of the corners around a position, and all to which light is smooth from it, directly or over others, in their order.
@@ -437,7 +506,7 @@ fn sheet(soup: &Soup, left: &mut Vec<Around>, crease: f64) -> Vec<Around> {
     sheet
 }
 
-fn drop_degenerate(mesh: &mut Mesh) {
+fn drop_degenerate(Draft { mesh, sources }: &mut Draft) {
     let positions = &mesh.positions;
     let has_area = |t: &[usize; 3]| {
         let [a, b, c] = t.map(|v| positions[v]);
@@ -449,19 +518,14 @@ fn drop_degenerate(mesh: &mut Mesh) {
     let kept: Vec<_> = (0..mesh.triangles.len()).filter(|&triangle| kept(triangle)).collect();
     mesh.submeshes = kept.iter().map(|&triangle| mesh.submesh(triangle)).collect();
     mesh.triangles = kept.iter().map(|&triangle| mesh.triangles[triangle]).collect();
+    if !sources.is_empty() {
+        *sources = kept.iter().map(|&triangle| sources[triangle]).collect();
+    }
 }
 
 /// Whether each edge has exactly one partner that runs the other way.
 pub(crate) fn is_closed(mesh: &Mesh) -> bool {
-    let mut places: HashMap<[u64; 3], usize> = HashMap::new();
-    let ids: Vec<usize> = mesh
-        .positions
-        .iter()
-        .map(|p| {
-            let next = places.len();
-            *places.entry(p.map(f64::to_bits)).or_insert(next)
-        })
-        .collect();
+    let ids = mesh.places();
     edges_pair_up(mesh.triangles.iter().map(|t| t.map(|v| ids[v])))
 }
 
@@ -483,7 +547,12 @@ fn volume(mesh: &Mesh) -> f64 {
 
 fn drop_unused(mesh: &mut Mesh) {
     let mut index = vec![None; mesh.positions.len()];
-    let mut kept = Mesh { submeshes: mem::take(&mut mesh.submeshes), ..Mesh::default() };
+    let mut kept = Mesh {
+        submeshes: mem::take(&mut mesh.submeshes),
+        colours: mem::take(&mut mesh.colours),
+        palettes: mem::take(&mut mesh.palettes),
+        ..Mesh::default()
+    };
     for triangle in &mesh.triangles {
         kept.triangles.push(triangle.map(|v| {
             *index[v].get_or_insert_with(|| {

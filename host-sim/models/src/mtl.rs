@@ -45,17 +45,16 @@ const EXPONENT: f64 = 30.0;
 pub(crate) const SHARPEST: f64 = 1024.0;
 
 impl Material {
-    /// A material of one colour without a highlight.
-    pub(crate) fn matt(name: String, colour: V3) -> Self {
-        Self { name, diffuse: Some(colour), specular: Some([0.0; 3]), ..Self::default() }
+    /// A white material without a highlight.
+    pub(crate) fn white() -> Self {
+        Self { name: "white".to_owned(), diffuse: Some([1.0; 3]), specular: Some([0.0; 3]), ..Self::default() }
     }
 
-    /// The material, where its surface is multiplied by a colour, which has a name.
-    pub(crate) fn painted(&self, name: &str, colour: V3) -> Self {
-        let by = |own: V3| [0, 1, 2].map(|k| own[k] * colour[k]);
+    /// The material of a surface whose colour is multiplied by those of a texture or of vertices.
+    pub(crate) fn under_colours(&self) -> Self {
         // A texture has all of the colour where the file does not say what is multiplied by it.
-        let diffuse = Some(by(self.diffuse.unwrap_or(if self.texture.is_some() { [1.0; 3] } else { DIFFUSE })));
-        Self { name: format!("{} {name}", self.name), diffuse, ambient: self.ambient.map(by), ..self.clone() }
+        let diffuse = Some(self.diffuse.unwrap_or(if self.texture.is_some() { [1.0; 3] } else { DIFFUSE }));
+        Self { diffuse, ..self.clone() }
     }
 
     /// Converts the material to one of a stream, under ambient light from 0 to 1.

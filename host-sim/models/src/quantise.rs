@@ -3,7 +3,7 @@
 use crate::{
     convex::is_closed_convex,
     levels::Level,
-    mesh::{Mesh, Submesh},
+    mesh::{Coloured, Mesh, Rgb, Submesh},
     number::{above, below, nearest},
     records,
     vector::{V3, add, cross, dot, length, scale, sub, unit},
@@ -39,7 +39,7 @@ pub struct Part {
     /// Their corners count from this part's first vertex.
     pub triangles: Vec<Triangle>,
     /// The colours of all corners, at most 256; empty if corners have none.
-    pub palette: Vec<[u8; 3]>,
+    pub palette: Vec<Rgb>,
     /// For each triangle the colours of its corners as indices of the palette; empty if corners have none.
     pub colours: Vec<[u8; 3]>,
     /// Closed and convex: front faces never hide one another.
@@ -58,8 +58,8 @@ impl Part {
     }
 }
 
-/// Rounds a mesh to a stream's formats. Each submesh becomes a part, and several of more than 65,535 vertices. Parts of an object follow one
-/// another.
+/// Rounds a mesh to a stream's formats. Each submesh becomes a part, and several if it has more than 65,535 vertices or several palettes. Parts of an
+/// object follow one another.
 ///
 /// Also counts triangles that had an area before the rounding, but not after it.
 #[must_use]
@@ -68,16 +68,19 @@ pub fn quantise(mesh: &Mesh) -> (Vec<Part>, usize) {
         mesh.positions.iter().zip(&mesh.normals).map(|(&p, &n)| records::vertex(p.map(nearest), normal(n))).collect();
     let mut parts = Vec::new();
     let mut dropped = 0;
-    let mut submeshes: BTreeMap<Submesh, Vec<[usize; 3]>> = BTreeMap::new();
-    for (number, &corners) in mesh.triangles.iter().enumerate() {
-        submeshes.entry(mesh.submesh(number)).or_default().push(corners);
+    let mut submeshes: BTreeMap<(Submesh, Option<u16>), Vec<usize>> = BTreeMap::new();
+    for number in 0..mesh.triangles.len() {
+        let palette = mesh.coloured(number).map(|coloured| coloured.palette);
+        submeshes.entry((mesh.submesh(number), palette)).or_default().push(number);
     }
-    for (Submesh { object, material }, triangles) in submeshes {
+    for ((Submesh { object, material }, palette), triangles) in submeshes {
+        let palette = palette.map_or_else(Vec::new, |palette| mesh.palettes[usize::from(palette)].clone());
         // A stream refuses more materials than its numbers can count.
-        let new = Part { object, material: material.try_into().unwrap_or(u16::MAX), ..Part::default() };
+        let new = Part { object, material: material.try_into().unwrap_or(u16::MAX), palette, ..Part::default() };
         let mut part = new.clone();
         let mut index: HashMap<usize, u16> = HashMap::new();
-        for corners in triangles {
+        for number in triangles {
+            let corners = mesh.triangles[number];
             let Some(mut triangle) = constants(corners.map(|v| vertices[v])) else {
                 dropped += 1;
                 continue;
@@ -94,6 +97,7 @@ pub fn quantise(mesh: &Mesh) -> (Vec<Part>, usize) {
                 })
             });
             part.triangles.push(triangle);
+            part.colours.extend(mesh.coloured(number).map(|Coloured { colours, .. }| colours));
         }
         parts.push(part);
     }

@@ -103,7 +103,7 @@ impl Texture {
         let Self { image, transform } = self;
         let [u, v] = transform.map(|[a, b, c]| a * u + b * v + c);
         let height = image.pixels.len() / image.width;
-        let place = |coordinate: f64, size: usize| ((coordinate.rem_euclid(1.0) * size as f64) as usize).min(size - 1);
+        let place = |coordinate: f64, size: usize| (((coordinate - coordinate.floor()) * size as f64) as usize).min(size - 1);
         image.pixels[place(v, height) * image.width + place(u, image.width)].map(|c| f64::from(c) / 255.0)
     }
 }

@@ -22,6 +22,7 @@ use microphong_sim::{
     levels,
     mesh::Mesh,
     output,
+    paint::Painted,
     quantise::{Part, quantise},
     render::{self, Format},
     scene::{self, Scene},
@@ -126,6 +127,8 @@ struct Line<'a> {
     /// The saving by --merge, if objects have meshes of their own.
     by_object: Option<ByObject>,
     materials: usize,
+    /// Colours at the corners of triangles, before the mesh is simplified, if there are any.
+    colours: Option<Painted>,
     vertices: usize,
     triangles: usize,
     welded: usize,
@@ -228,7 +231,7 @@ pub(crate) fn run(arguments: &Arguments) -> Result<Outcome> {
     let load = |stream: &Stream<'_>| Ok(picture.roomiest(stream, &picture.layout(stream)?)?.1);
     let remedy = if fits { None } else { Remedy::search((&converted, &options), chip.name, &load, &bars)? };
     drop(bars);
-    let Converted { mesh, report, materials, mut remarks, parts, lost, look, simplified, .. } = converted;
+    let Converted { mesh, report, materials, mut remarks, parts, lost, look, simplified, painted, .. } = converted;
     if let (Some(most), None) = (options.simplify, &simplified) {
         remarks.push(format!("not simplified: the mesh has no more than {} triangles", report::grouped(most as u64)));
     }
@@ -242,7 +245,8 @@ pub(crate) fn run(arguments: &Arguments) -> Result<Outcome> {
         meshes: parts.len(),
         list: meshes::rows(&stream)?,
         by_object: by_object(mesh, stream.names.len()),
-        materials: materials.iter().flatten().count(),
+        materials: materials.iter().flatten().count() - painted.materials,
+        colours: Some(painted).filter(|painted| painted.triangles > 0),
         vertices: parts.iter().map(|p| p.vertices.len()).sum(),
         triangles: parts.iter().map(|p| p.triangles.len()).sum(),
         welded: report.welded,

@@ -144,6 +144,10 @@ fn text(file: &str, stream: &Stream<'_>, list: &[meshes::Row]) -> Result<()> {
     if !stream.neighbours.is_empty() {
         row("neighbours", stream.neighbours.len(), size_of_val(stream.neighbours), "")?;
     }
+    if !stream.colours.is_empty() {
+        row("colours", stream.colours.len(), size_of_val(stream.colours), "the palettes of all meshes")?;
+        row("corners", stream.corner_colours.len(), size_of_val(stream.corner_colours), "triangles with the colours at their corners")?;
+    }
     if !stream.labels.is_empty() {
         row("labels", stream.labels.len(), size_of_val(stream.labels), &labels(stream))?;
     }

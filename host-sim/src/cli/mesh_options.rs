@@ -4,7 +4,7 @@ use super::{Usage, parse};
 use microphong::format::MAX_LIGHTS;
 use microphong_sim::{
     convert::{AZIMUTH, DISTANCE, ELEVATION, Finish, ORBIT, Options},
-    import::{COLOURS, Rules},
+    import::{Colours, Rules},
     look::{Lamp, Surface},
     mesh::{CREASE, Weld},
     render::Format,
@@ -36,11 +36,10 @@ pub(crate) struct MeshOptions {
     /// only for models that you trust.
     #[arg(long)]
     allow_outside: bool,
-    /// Number of materials, at most, that are made for colours of textures and of vertices, but one for each material that has such colours. Each face
-    /// takes the material that is nearest to its colour.
-    /// A material takes about 2.5 KB of a program's memory. With 0, these colours are left out.
-    #[arg(long, visible_alias = "colors", value_name = "MATERIALS", default_value_t = COLOURS)]
-    colours: usize,
+    /// What becomes of the colours of textures and vertices. With corners, triangles have colours at their corners, which take 4 bytes of flash for each
+    /// triangle. With none, these colours are left out, and images are not read.
+    #[arg(long, visible_alias = "colors", default_value = "corners", value_parser = parse::Corners)]
+    colours: Colours,
     /// Merge all objects into one object without a name, which takes less flash. It has one mesh for each material.
     #[arg(long)]
     merge: bool,
@@ -120,7 +119,7 @@ impl MeshOptions {
             rules: Rules {
                 strict: self.strict,
                 allow_outside: self.allow_outside,
-                colours: if self.colour.is_some() { 0 } else { self.colours },
+                colours: if self.colour.is_some() { Colours::None } else { self.colours },
             },
             merge: self.merge,
             surface: material(self.colour.unwrap_or(colour), shares, self.exponent.unwrap_or(exponent)),

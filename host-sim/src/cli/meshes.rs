@@ -16,6 +16,10 @@ pub(crate) struct Row {
     name: Option<String>,
     material: u16,
     triangles: u32,
+    /// Number of colours at the corners of its triangles.
+    colours: usize,
+    /// Number of triangles that have colours and have only one.
+    of_one_colour: usize,
 }
 
 /// All meshes of a stream.
@@ -27,7 +31,21 @@ pub(crate) fn rows(stream: &Stream<'_>) -> Result<Vec<Row>, StreamError> {
     for (index, mesh) in stream.meshes.iter().enumerate() {
         match rows.last_mut() {
             Some(row) if mesh.error > 0 => row.end += 1,
-            _ => rows.push(Row { index, end: index + 1, name: None, material: mesh.material, triangles: mesh.triangles }),
+            _ => {
+                let corners = stream.colours_of(mesh).map_or(&[][..], |colours| colours.corners);
+                let mut colours: Vec<u8> = corners.iter().flat_map(|corners| corners.colours).collect();
+                colours.sort_unstable();
+                colours.dedup();
+                rows.push(Row {
+                    index,
+                    end: index + 1,
+                    name: None,
+                    material: mesh.material,
+                    triangles: mesh.triangles,
+                    colours: colours.len(),
+                    of_one_colour: corners.iter().filter(|corners| corners.range == 0).count(),
+                });
+            }
         }
     }
     let mut unnamed = rows.iter_mut().peekable();
@@ -40,16 +58,22 @@ pub(crate) fn rows(stream: &Stream<'_>) -> Result<Vec<Row>, StreamError> {
     Ok(rows)
 }
 
-/// Lists at most `most` meshes, if there are several objects or materials. `materials` are names from the converted file.
+/// Lists at most `most` meshes, if there are several, or objects have names, or triangles have colours. `materials` are names from the converted file.
 pub(crate) fn text(rows: &[Row], materials: &[Option<&str>], most: usize) -> Result<()> {
-    if matches!(rows, [Row { name: None, .. }]) {
+    if matches!(rows, [Row { name: None, colours: 0, .. }]) {
         return Ok(());
     }
-    for Row { index, end, name, material, triangles } in rows.iter().take(most) {
+    for Row { index, end, name, material, triangles, colours, of_one_colour } in rows.iter().take(most) {
         let name = name.as_ref().map_or_else(String::new, |name| format!("{name:?}, "));
         let of = materials.get(usize::from(*material)).copied().flatten().map_or_else(String::new, |of| format!(" {of:?}"));
         let meshes = if end - index > 1 { format!("meshes {index} to {}", end - 1) } else { format!("mesh {index}") };
-        report::line(&format!("  {meshes}: {name}material {material}{of}, {}", report::counted(*triangles, report::TRIANGLES)))?;
+        let triangles = report::counted(*triangles, report::TRIANGLES);
+        let colours = match colours {
+            0 => String::new(),
+            1 => ", all of one colour".to_owned(),
+            several => format!(" with {several} colours, {} of them of one colour", report::grouped(*of_one_colour as u64)),
+        };
+        report::line(&format!("  {meshes}: {name}material {material}{of}, {triangles}{colours}"))?;
     }
     if rows.len() > most {
         report::line(&format!("  and {} more: `microphong inspect` lists all", report::counted(rows.len() - most, MESHES)))?;

@@ -9,6 +9,7 @@ use microphong::{
     format::{ErrorBudget, LARGEST_BUDGET, LEAST_BUDGET},
 };
 use microphong_sim::{
+    import::Colours,
     look::{Cone, LIGHT_RANGE, Lamp, LampKind},
     papers::Topic,
     render::Format,
@@ -109,6 +110,23 @@ impl TypedValueParser for Formats {
 
     fn possible_values(&self) -> Option<Box<dyn Iterator<Item = PossibleValue> + '_>> {
         Some(Box::new(Format::ALL.into_iter().map(|format| PossibleValue::new(format.name()))))
+    }
+}
+
+/// What becomes of the colours of textures and vertices. Help lists all names.
+#[derive(Clone)]
+pub(crate) struct Corners;
+
+impl TypedValueParser for Corners {
+    type Value = Colours;
+
+    fn parse_ref(&self, command: &Command, argument: Option<&Arg>, value: &OsStr) -> Result<Colours, clap::Error> {
+        let colours = |text: &str| among(text, &Colours::ALL, Colours::name);
+        colours.parse_ref(command, argument, value)
+    }
+
+    fn possible_values(&self) -> Option<Box<dyn Iterator<Item = PossibleValue> + '_>> {
+        Some(Box::new(Colours::ALL.into_iter().map(|colours| PossibleValue::new(colours.name()))))
     }
 }
 
