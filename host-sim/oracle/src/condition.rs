@@ -124,8 +124,16 @@ mod tests {
             let light = Light { cone, ..Light::even(place, [1.0; 3]) };
             let material = Material { ambient: [0.0; 3], diffuse: [0.5; 3], specular: [0.5; 3], exponent: 8.0 };
             let viewer = Place::Far(normal);
-            Frame { size: (60, 60), facets: Vec::new(), lights: vec![light], viewer, axes: Facet::CORNERS, materials: vec![material] }
-                .weakening(&facet, point)
+            Frame {
+                size: (60, 60),
+                facets: Vec::new(),
+                lights: vec![light],
+                viewer,
+                axes: Facet::CORNERS,
+                materials: vec![material],
+                is_gray: false,
+            }
+            .weakening(&facet, point)
         };
         let cone = Some(([0.0, 0.0, -1.0], [0.6, 0.8]));
         let [far, close] = [1.0, 0.01].map(|height| weakening(height, cone));
@@ -147,6 +155,7 @@ mod tests {
             viewer,
             axes: Facet::CORNERS,
             materials: vec![Material { ambient: [0.0; 3], diffuse: [0.5; 3], specular: [1.0; 3], exponent: 8.0 }],
+            is_gray: false,
         };
         let above = Place::Far([0.0, 0.0, 1.0]);
         let far = frame(above, above);

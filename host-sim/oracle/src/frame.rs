@@ -31,6 +31,8 @@ pub struct Frame {
     pub axes: [V3; 3],
     /// Materials in the stream's order.
     pub materials: Vec<Material>,
+    /// Whether pixels are grey: all light is its luma, and so are the colours of surfaces.
+    pub is_gray: bool,
 }
 
 /// A triangle.
@@ -135,7 +137,14 @@ impl Frame {
             viewer,
             axes: [direction(right), direction(up), towards],
             materials: materials.collect(),
+            is_gray: false,
         }
+    }
+
+    /// This frame in greys.
+    #[must_use]
+    pub fn in_greys(self) -> Self {
+        Self { is_gray: true, ..self }
     }
 
     /// A frame as [`Self::new`] makes it, in which methods take the point of the triangle that is seen. [`Self::new`] takes the point that divides

@@ -55,11 +55,14 @@ impl Frame {
     }
 
     /// The one channel in which a facet is shaded: the brightest, if all light that its material reflects has one hue, to 1/1024 of the largest
-    /// channel. Such a material is interpolated in one channel under a table of colours. A facet with colours always has three channels.
+    /// channel. Such a material is interpolated in one channel under a table of colours. A facet with colours always has three channels. Greys have
+    /// one.
     #[must_use]
     pub fn only_channel(&self, facet: &Facet) -> Option<usize> {
-        if facet.albedos.is_some() {
-            return None;
+        match facet.albedos {
+            _ if self.is_gray => return Some(0),
+            Some(_) => return None,
+            None => {}
         }
         let material = self.material(facet);
         let product = |a: V3, b: V3| [0, 1, 2].map(|k| a[k] * b[k]);
@@ -75,16 +78,23 @@ impl Frame {
         colours.iter().all(alike).then(|| brightest(base))
     }
 
+    /// Light in the channels of the pixels: in greys Rec. 601's luma, by the weights of 8 bits.
+    fn shown(&self, [r, g, b]: V3) -> V3 {
+        if self.is_gray { [(77.0 * r + 150.0 * g + 29.0 * b) / 256.0; 3] } else { [r, g, b] }
+    }
+
     /// `255 (albedo ka + Σ colour (albedo kd d + ks s))` over all lights, each with its `[d, s]`, d from 0 to 1: what approximation lifts above
     /// one counts as one. The albedo is that of `point`, and ranges and cones weaken lights as there.
     pub(super) fn levels(&self, facet: &Facet, point: SurfacePoint, reflected: impl IntoIterator<Item = [f64; 2]>) -> Levels {
         let (material, SurfacePoint { position, albedo }) = (self.material(facet), point);
-        let [ambient, gains] = [material.ambient, material.diffuse].map(|gain| [0, 1, 2].map(|k| gain[k] * albedo[k]));
-        let mut sum = ambient;
+        let product = |a: V3, b: V3| [0, 1, 2].map(|k| a[k] * b[k]);
+        let albedo = self.shown(albedo);
+        let mut sum = product(albedo, self.shown(material.ambient));
         for (light, [diffuse, specular]) in self.lights.iter().zip(reflected) {
             let (strength, specular) = (light.strength(position), if light.is_sky { 0.0 } else { specular });
+            let [gains, highlights] = [material.diffuse, material.specular].map(|gain| self.shown(product(light.colour, gain)));
             for (k, channel) in sum.iter_mut().enumerate() {
-                *channel += light.colour[k] * strength * (gains[k] * light.diffuse(diffuse) + material.specular[k] * specular);
+                *channel += strength * (albedo[k] * gains[k] * light.diffuse(diffuse) + highlights[k] * specular);
             }
         }
         sum.map(|channel| (255.0 * channel).clamp(0.0, 255.0))
@@ -160,6 +170,7 @@ mod tests {
             viewer: Place::Far([0.0, 0.0, 1.0]),
             axes: Facet::CORNERS,
             materials: vec![material],
+            is_gray: false,
         }
     }
 
@@ -239,6 +250,21 @@ mod tests {
             assert!(
                 apart(shade("gouraud", middle), mean) < 1e-9 && apart(shade("six-point", middle), exact) < 1e-9 && apart(mean, exact) > 1.0
             );
+        }
+    }
+
+    /// In greys the luma of a colour multiplies the luma of ambient and of diffuse light. So all is grey if the colours are all of one luma.
+    #[test]
+    fn greys_have_the_luma_of_colours() {
+        let luma = |[r, g, b]: V3| (77.0 * r + 150.0 * g + 29.0 * b) / 256.0;
+        let [red, blue] = [[0.9, 0.2, 0.1], [0.0, 0.5, 1.0]];
+        let colours = [red, blue, red];
+        for near in [FAR, NEAR] {
+            let frame = frame(MATERIAL, near).in_greys();
+            let found = all(&frame, &facet(Some(colours)));
+            assert!(found.iter().all(|(_, [r, g, b])| r == g && g == b));
+            assert_equal(&found, &all(&frame, &facet(Some(colours.map(|colour| [luma(colour); 3])))));
+            assert_eq!(frame.only_channel(&facet(Some(colours))), Some(0));
         }
     }
 

@@ -105,7 +105,8 @@ mod tests {
         let facets = [0.25, 0.5, 0.5 + step, 0.5, 0.5 - 4.0 * step].map(|inv_depth| facet(square, inv_depth));
         let axes = [[1.0, 0.0, 0.0], [0.0, 1.0, 0.0], [0.0, 0.0, 1.0]];
         let viewer = crate::Place::Far(axes[2]);
-        let frame = Frame { size: (8, 8), facets: facets.to_vec(), lights: Vec::new(), viewer, axes, materials: Vec::new() };
+        let frame =
+            Frame { size: (8, 8), facets: facets.to_vec(), lights: Vec::new(), viewer, axes, materials: Vec::new(), is_gray: false };
         let visible = frame.visible();
         assert_eq!(visible[0], [2, 1, 3]);
         assert!(visible[63].is_empty());

@@ -10,10 +10,15 @@ use crate::{
     scenes::{self, Hard, Wishes},
     tiles,
 };
+use embedded_graphics_core::pixelcolor::{Gray8, GrayColor};
 use microphong::{Stream, renderer};
 use microphong_compare::{UNDECIDED, level};
 use microphong_oracle::{Facet, Frame, Levels, MOST_OUTCOMES, Shade, chosen, decides, method, outcomes};
-use microphong_render::{render::Style, shader::Shader};
+use microphong_render::{
+    choices,
+    render::{self, Format, Style},
+    shader::Shader,
+};
 
 /// Largest difference of any method, in 1/255 of full intensity.
 pub const LIMIT: f64 = 0.5;
@@ -134,6 +139,7 @@ pub fn judge(case: &Case) -> Option<Found> {
     let (stream, size) = (case.stream.parse().ok()?, (case.size[0], case.size[1]));
     let of = if case.style.perspective_correct { Frame::perspective_correct } else { Frame::new };
     let frame = of(stream, size, case.frame);
+    let frame = if is_gray(case) { frame.in_greys() } else { frame };
     let lights = PER_LIGHT * frame.lights.len().saturating_sub(1) as f64;
     let divides = Divides::of(case.style.shader.name(), frame.is_constant());
     let mirrors = case.style.shader.name() == "phong-rv";
@@ -167,11 +173,17 @@ pub fn judge(case: &Case) -> Option<Found> {
 /// The shading of all triangles of a frame by a method in floating point. A method that makes choices uses the recorded ones. `None` if the method
 /// cannot shade them.
 fn shades<'f>(case: &Case, stream: Stream<'_>, frame: &'f Frame) -> Option<Vec<Shade<'f>>> {
-    let told = level::choices(stream, case.pixels(), case.style, case.frame).ok()?;
+    let Style { shader, perspective_correct, .. } = case.style;
+    let told = if is_gray(case) {
+        choices::by::<Gray8>(shader, stream, case.pixels(), perspective_correct, case.frame)
+    } else {
+        level::choices(stream, case.pixels(), case.style, case.frame)
+    };
+    let told = told.ok()?;
     let way = |facet: &Facet| told.as_ref()?.ways.get(facet.id as usize).copied().flatten();
     let shade = |facet: &'f Facet| match way(facet) {
         Some(way) => Some(chosen(frame, facet, way)),
-        None => method(case.style.shader.name(), frame, facet).ok(),
+        None => method(shader.name(), frame, facet).ok(),
     };
     frame.facets.iter().map(shade).collect()
 }
@@ -209,12 +221,29 @@ impl Pixel {
     }
 }
 
+/// Whether a case is judged in greys. All other formats are judged in three channels.
+fn is_gray(case: &Case) -> bool {
+    case.format == Format::Gray8
+}
+
+/// The levels of a frame, pixel by pixel; none where nothing is drawn. Greys are those of pixels, which are rounded, and count as drawn where a facet
+/// is `visible`. `None` if the method cannot draw it.
+fn levels(case: &Case, stream: Stream<'_>, visible: &[Vec<u32>]) -> Option<Vec<Option<[f64; 3]>>> {
+    if !is_gray(case) {
+        return level::picture(stream, case.pixels(), case.style, case.frame).ok();
+    }
+    let (pixels, _) = render::frame::<Gray8>(stream, case.pixels(), case.style, case.size[1], case.frame).ok()?;
+    let level = |(pixel, seen): (&Gray8, &Vec<u32>)| (!seen.is_empty()).then(|| [f64::from(pixel.luma()); 3]);
+    Some(pixels.iter().zip(visible).map(level).collect())
+}
+
 /// Compares all pixels of a frame with its method in floating point.
 fn pixels(case: &Case, frame: &Frame, visible: &[Vec<u32>]) -> Option<Vec<Pixel>> {
     let shader = case.style.shader;
     let stream = case.stream.parse().ok()?;
     let shades = shades(case, stream, frame)?;
-    let drawn = level::picture(stream, case.pixels(), case.style, case.frame).ok()?;
+    let drawn = levels(case, stream, visible)?;
+    let rounding = if is_gray(case) { 0.5 } else { 0.0 };
     let mut pixels = Vec::new();
     for (i, (levels, candidates)) in drawn.iter().zip(visible).enumerate() {
         let centre = [i as u32 % case.size[0], i as u32 / case.size[0]].map(|c| f64::from(c) + 0.5);
@@ -226,8 +255,10 @@ fn pixels(case: &Case, frame: &Frame, visible: &[Vec<u32>]) -> Option<Vec<Pixel>
                 continue;
             }
         };
-        let errors =
-            candidates.iter().map(|&c| (c, difference(frame, &frame.facets[c as usize], levels, shades[c as usize](centre)))).collect();
+        let errors = candidates
+            .iter()
+            .map(|&c| (c, difference(frame, &frame.facets[c as usize], levels, shades[c as usize](centre)) - rounding))
+            .collect();
         let mut pixel = Pixel { centre, errors, is_undecidable: false };
         if pixel.least() > UNDECIDED && decides(shader.name()) {
             for (facet, error) in &mut pixel.errors {
@@ -236,7 +267,7 @@ fn pixels(case: &Case, frame: &Frame, visible: &[Vec<u32>]) -> Option<Vec<Pixel>
                     let point = [centre[0] + x, centre[1] + y];
                     let outcomes: Vec<Levels> = outcomes(shader.name(), frame, facet, point, frame.undecided(facet)).ok()?;
                     pixel.is_undecidable |= outcomes.len() == MOST_OUTCOMES;
-                    *error = outcomes.into_iter().map(|exact| difference(frame, facet, levels, exact)).fold(*error, f64::min);
+                    *error = outcomes.into_iter().map(|exact| difference(frame, facet, levels, exact) - rounding).fold(*error, f64::min);
                 }
             }
         }

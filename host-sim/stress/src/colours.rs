@@ -104,8 +104,8 @@ mod tests {
     use super::*;
     use crate::scenes::{self, Hard, Wishes};
 
-    /// A third of all random scenes have colours. Some triangles have one colour, and some have equal colours by different numbers, close ones, or the
-    /// most different ones. Some palettes have one colour and some 256, and some meshes have levels of detail.
+    /// A third of all random scenes have colours. Some triangles have one colour, and some have equal colours by different numbers, close ones, or
+    /// the most different ones. Some palettes have one colour and some 256, and some meshes have levels of detail.
     #[test]
     fn a_third_of_all_scenes_have_colours() {
         let (mut scenes, mut coloured, mut levels, mut one, mut full) = (0, 0, 0, 0, 0);

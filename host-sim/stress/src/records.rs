@@ -136,8 +136,8 @@ impl Records {
         stream.meshes.iter().map(of).collect()
     }
 
-    /// Gives all corners these colours, by palettes as small as can be. `None` if there are too many colours, or if some levels of a mesh have colours
-    /// and others have none.
+    /// Gives all corners these colours, by palettes as small as can be. `None` if there are too many colours, or if some levels of a mesh have
+    /// colours and others have none.
     pub(crate) fn paint(self, painted: &Painted) -> Option<Self> {
         let mut records = self.without_colours();
         let mut first = 0;

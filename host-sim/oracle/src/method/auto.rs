@@ -32,8 +32,8 @@ pub(super) fn shade<'f, const QUADRATICS: bool>(frame: &'f Frame, facet: &'f Fac
 #[must_use]
 pub fn chosen<'f>(frame: &'f Frame, facet: &'f Facet, Chosen { way, raises }: Chosen) -> Shade<'f> {
     let shade = match way {
-        // Under one light in three channels the core has no levels at the corners, but a cosine and a highlight.
-        Way::OneColour => solid(frame, facet, frame.lights.len() == 1 && frame.only_channel(facet).is_none()),
+        // Under one light in three channels, or on a surface with colours, the core has no levels at the corners, but a cosine and a highlight.
+        Way::OneColour => solid(frame, facet, frame.lights.len() == 1 && (facet.albedos.is_some() || frame.only_channel(facet).is_none())),
         Way::Linear => gouraud::shade(frame, facet),
         Way::Quadratic => six_point::shade(frame, facet),
         Way::Cosines => sqrt6::by_cosines(frame, facet),
@@ -48,8 +48,8 @@ pub fn chosen<'f>(frame: &'f Frame, facet: &'f Facet, Chosen { way, raises }: Ch
     })
 }
 
-/// One colour: `by_light` from the means of the extremes of cosine, highlight and albedo at the corners, otherwise from the means of the extremes of the
-/// corners' levels.
+/// One colour: `by_light` from the means of the extremes of cosine, highlight and albedo at the corners, otherwise from the means of the extremes of
+/// the corners' levels.
 fn solid<'f>(frame: &'f Frame, facet: &'f Facet, by_light: bool) -> Shade<'f> {
     let middle = |values: [f64; 3]| {
         let [least, most] = [f64::min, f64::max].map(|extreme| values.into_iter().reduce(extreme).unwrap_or(0.0));

@@ -90,6 +90,7 @@ mod tests {
             viewer: Place::Near([0.5, 0.0, 1.5]),
             axes: Facet::CORNERS,
             materials: vec![glossy],
+            is_gray: false,
         };
         let sums = positions.map(|p| {
             let rays = frame.rays(&frame.lights[0], p);
