@@ -6,6 +6,7 @@
 //! Error: levels are rounded to the nearest; white changes none.
 
 use crate::{
+    arch::product::unsigned_product,
     features::COLOURED,
     format::LEVEL,
     lighting::reflectance::FULL,
@@ -21,7 +22,7 @@ pub(crate) type IfColoured<T> = [T; COLOURED];
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct Albedo([u16; 3]);
 
-/// The levels of ambient and diffuse light, Q9.7 in [0, 512), and those of highlights, which no colour changes.
+/// The levels of ambient and diffuse light, Q9.7 or more bits, and those of highlights, which no colour changes.
 #[derive(Clone, Copy, Debug)]
 pub struct Parts {
     /// Ambient and diffuse light.
@@ -37,12 +38,18 @@ const MOST: i32 = (1 << (LEVEL + 9)) - 1;
 
 impl Albedo {
     /// A colour of a palette. In greys all shares are that of its luma, by the weights of Rec. 601.
-    #[inline]
-    pub(crate) fn new(Colour { channels: [r, g, b], .. }: Colour, is_gray: bool) -> Self {
+    #[inline(always)]
+    fn new(Colour { channels: [r, g, b], .. }: Colour, is_gray: bool) -> Self {
         let [r, g, b] = [r, g, b].map(u32::from);
         // From 255 to 65,535.
         let share = |c: u32| (c * 257) as u16;
-        Self(if is_gray { [((r * 77 + g * 150 + b * 29) * 257 >> 8) as u16; 3] } else { [share(r), share(g), share(b)] })
+        Self(if is_gray { [(((r * 77 + g * 150 + b * 29) * 257) >> 8) as u16; 3] } else { [share(r), share(g), share(b)] })
+    }
+
+    /// Three colours of a palette, see [`Self::new`].
+    #[inline(never)]
+    pub(crate) fn all([a, b, c]: [Colour; 3], is_gray: bool) -> [Self; 3] {
+        [Self::new(a, is_gray), Self::new(b, is_gray), Self::new(c, is_gray)]
     }
 
     /// The colour of these shares, which lie in [0, 65,535].
@@ -91,27 +98,37 @@ impl Albedo {
         Self(map(Self::extremes(corners), |(least, most)| least + ((most - least) >> 1)))
     }
 
+    /// The levels of a vertex that holds [`Parts`], at a corner of this colour.
+    #[inline(always)]
+    pub(crate) fn lit_vertex(self, [r, g, b, spare]: [i32; 4]) -> [i32; 3] {
+        // In words, and so without an array of each part.
+        let lit = |parts: i32, share: u16| {
+            let (diffuse, specular) = (parts as u32 & MOST as u32, parts as u32 >> SHARE);
+            let bits = (SHARE - spare as u32) & 31;
+            (((diffuse * u32::from(share) + (1 << (SHARE - 1))) >> bits) + specular).min(FULL as u32) as i32
+        };
+        let [red, green, blue] = self.0;
+        [lit(r, red), lit(g, green), lit(b, blue)]
+    }
+
     /// The levels of a surface of this colour, Q9.7 in [0, 255].
     #[inline]
     pub(crate) fn lit(self, Parts { diffuse, specular }: Parts) -> [i32; 3] {
-        let reflected = zip(diffuse, self.0, |level, share| (level as u32 * u32::from(share) + (1 << (SHARE - 1))) >> SHARE);
+        let reflected = zip(diffuse, self.0, |level, share| (unsigned_product(level as u32, share.into()) + (1 << (SHARE - 1))) >> SHARE);
         zip(reflected, specular, |reflected, specular| (reflected as i32 + specular).min(FULL))
     }
 }
 
 impl Parts {
-    /// The parts as a vertex holds them.
+    /// The parts as a vertex holds them. Where ambient and diffuse light exceed 512, which a dark colour can make visible, their levels have fewer
+    /// fraction bits: the fourth number says how many.
     #[inline]
     pub(crate) fn packed(self) -> [i32; 4] {
-        let [r, g, b] = zip(self.diffuse, self.specular, |diffuse, specular| diffuse.min(MOST) | specular.min(MOST) << SHARE);
-        [r, g, b, 0]
-    }
-
-    /// The parts of a vertex that holds them.
-    #[inline]
-    pub(crate) fn of_vertex([r, g, b, _]: [i32; 4]) -> Self {
-        let packed = [r, g, b];
-        Self { diffuse: map(packed, |both| both & MOST), specular: map(packed, |both| (both as u32 >> SHARE) as i32) }
+        let [r, g, b] = self.diffuse;
+        let spare = ((r | g | b) as u32 >> SHARE).checked_ilog2().map_or(0, |bits| bits as i32 + 1);
+        let pack = |diffuse: i32, specular: i32| diffuse >> (spare & 31) | specular.min(MOST) << SHARE;
+        let [x, y, z] = zip(self.diffuse, self.specular, pack);
+        [x, y, z, spare]
     }
 }
 
@@ -125,11 +142,11 @@ mod tests {
     proptest! {
         #[test]
         fn levels_are_the_nearest(levels in prop::array::uniform3(0..=FULL), specular in prop::array::uniform3(0..=FULL), channels in prop::array::uniform3(0u8..)) {
-            let parts = Parts::of_vertex(Parts { diffuse: levels, specular }.packed());
-            prop_assert_eq!((parts.diffuse, parts.specular), (levels, specular));
+            let parts = Parts { diffuse: levels, specular };
             let white = Albedo::new(WHITE, false).lit(parts);
             prop_assert_eq!(white, zip(levels, specular, |a, b| (a + b).min(FULL)));
             let lit = Albedo::new(Colour { channels, unused: 0 }, false).lit(parts);
+            prop_assert_eq!(lit, Albedo::new(Colour { channels, unused: 0 }, false).lit_vertex(parts.packed()));
             for k in 0..3 {
                 let exact = f64::from(levels[k]) * f64::from(channels[k]) / 255.0 + f64::from(specular[k]);
                 prop_assert!((f64::from(lit[k]) - exact.min(f64::from(FULL))).abs() <= 1.0);
@@ -141,6 +158,6 @@ mod tests {
     fn greys_have_the_luma_of_a_colour() {
         let gray = |channels| Albedo::new(Colour { channels, unused: 0 }, true).shares();
         assert_eq!(gray([255; 3]), [65_535; 3]);
-        assert_eq!(gray([255, 0, 0]), [77 * 255 * 257 >> 8; 3]);
+        assert_eq!(gray([255, 0, 0]), [(77 * 255 * 257) >> 8; 3]);
     }
 }

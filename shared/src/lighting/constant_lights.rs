@@ -35,8 +35,8 @@ pub const COLOUR: u32 = 29;
 /// Multiplies a level by a walked share. Both levels have one format, in which they are not negative.
 #[inline(always)]
 fn painted(level: i32, share: u32) -> i32 {
-    // 16 bits of each make a word.
-    (level >> 15).wrapping_mul((share >> (COLOUR - 15)) as i32)
+    // 16 bits of each make a word. At the rim of a triangle a share may be a little less than 0.
+    (level >> 15).wrapping_mul((share as i32) >> (COLOUR - 15))
 }
 
 /// Fraction bits of [`Summed`].
@@ -259,6 +259,15 @@ impl<C: Pixel> Shades<WithHighlight> for OneLightRgb<'_, C> {
     fn colour(&self, bits: u32, WithHighlight(diffuse, highlight): WithHighlight) -> C {
         let ([r, g, b], cosine, highlight) = (self.0.now(), cosine(bits, diffuse), highlight as i32);
         C::mixed([r.level_from_highlight(cosine, highlight), g.level(cosine, highlight), b.level(cosine, highlight)])
+    }
+}
+
+impl<C: Pixel> Shades<DiffuseOnly> for OneLightRgb<'_, C> {
+    #[inline(always)]
+    fn colour(&self, bits: u32, DiffuseOnly(diffuse): DiffuseOnly) -> C {
+        let ([r, g, b], cosine) = (self.0.now(), cosine(bits, diffuse));
+        let level = |sum: &Sum| sum.ambient.wrapping_add(sum.diffuse.wrapping_mul(cosine));
+        C::mixed([level(r), level(g), level(b)])
     }
 }
 

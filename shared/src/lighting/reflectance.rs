@@ -690,8 +690,7 @@ impl<'f> LitMaterial<'f> {
             if LIGHT_SHAPES {
                 light = light.weakened(strength, 0);
             }
-            self.add(&mut parts.diffuse, gains, light.diffuse, 0);
-            self.add(&mut parts.specular, gains, 0, light.highlight);
+            parts.add(gains, light.diffuse, light.highlight);
         }
         parts
     }
@@ -705,8 +704,7 @@ impl<'f> LitMaterial<'f> {
             let cosine = normal.cosine(towards);
             let (towards, highlight) =
                 if source.is_sky() { (part_of_sky(cosine, COSINE), 0) } else { (cosine, self.highlight(normal.cosine(half))) };
-            self.add(&mut parts.diffuse, gains, towards, 0);
-            self.add(&mut parts.specular, gains, 0, highlight);
+            parts.add(gains, towards, highlight);
         }
         parts
     }
@@ -761,6 +759,24 @@ impl<'f> LitMaterial<'f> {
 fn diffuse_level([ambient, diffuse]: [i32; 2], cosine: i32) -> i32 {
     let base = ((ambient as u32) << 15) + (1 << 14);
     ((base + diffuse as u32 * (cosine.max(0) as u32 >> (COSINE - 15))) >> 15) as i32
+}
+
+impl Parts {
+    /// Adds what a light with these gains adds, from N·L (Q2.30) and a highlight (unsigned Q0.16).
+    #[inline(always)]
+    fn add(&mut self, gains: &Gains, towards: i32, highlight: u32) {
+        if towards > 0 {
+            let cosine = towards as u32 >> (COSINE - 15);
+            let lit = |level: i32, gain: u16| level.saturating_add(((u32::from(gain) * cosine + (1 << 14)) >> 15) as i32);
+            let ([r, g, b], [red, green, blue]) = (self.diffuse, gains.diffuse);
+            self.diffuse = [lit(r, red), lit(g, green), lit(b, blue)];
+        }
+        if highlight > 0 {
+            let lit = |level: i32, gain: u16| level.saturating_add(((u32::from(gain) * highlight + (1 << (ENTRY - 1))) >> ENTRY) as i32);
+            let ([r, g, b], [red, green, blue]) = (self.specular, gains.specular);
+            self.specular = [lit(r, red), lit(g, green), lit(b, blue)];
+        }
+    }
 }
 
 /// Light that a surface reflects at a pixel, before the gains of the material.

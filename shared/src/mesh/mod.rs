@@ -5,9 +5,10 @@ mod pass;
 pub(crate) mod vertices;
 
 use crate::{
+    features::COLOURED,
     geometry::bin::{TriangleKey, Walk},
     lighting::material_tables::MaterialTables,
-    method::{DrawTriangle, General, Loops, Shading, Style, TriangleSetup, needs_general, tiles},
+    method::{DrawTriangle, General, Loops, Middles, Shading, Style, TriangleSetup, needs_general, tiles},
     pixel::{Pixel, gamma::Gamma},
     raster::{
         band::Band,
@@ -122,7 +123,7 @@ impl<C: Pixel> Drawing<'_, C> {
     #[cfg_attr(not(all(target_arch = "arm", not(target_has_atomic = "32"))), inline(always))]
     fn draw_word_sized<L: Loops, const THREE: bool>(&self, triangle: &Triangle, key: u32, band: &mut Band<'_, C>) -> Option<u32> {
         let (by, corners) = turned(self.pass.corners(triangle)?);
-        let albedos = painting::turned(self.pass.corner_colours(triangle), by);
+        let albedos = self.pass.corner_colours(triangle, by);
         let place = band.active.take(key);
         let (screen, gradients, needs_depth_test);
         // Decision: continued.
@@ -146,6 +147,7 @@ impl<C: Pixel> Drawing<'_, C> {
             gradients: &gradients,
             corners,
             albedos: painting::lent(&albedos),
+            nodes_of_colours: [Middles::IN_SPACE; COLOURED],
             triangle,
             vertices: self.pass.vertices,
             turned: by,

@@ -1,6 +1,7 @@
 //! Set-up of the triangles of one mesh, whatever their size. It knows no pixel format.
 
 use crate::{
+    features::COLOURED,
     format::SUBPIXEL,
     geometry::{
         bin::TriangleKey,
@@ -13,7 +14,7 @@ use crate::{
         painting::{self, Corners, Painting},
         vertices::VertexStage,
     },
-    method::{Method, Shading, TriangleSetup},
+    method::{Method, Middles, Shading, TriangleSetup},
     raster::triangle::{ScreenTriangle, turn},
     setup::{
         edge::MAX_STEPPED_WIDTH,
@@ -74,10 +75,10 @@ impl MeshPass<'_> {
         key.triangle().wrapping_sub(self.first_triangle) as usize
     }
 
-    /// The colours at the corners of a triangle of the mesh.
+    /// The colours at the corners of a triangle of the mesh, turned by `by`.
     #[inline(always)]
-    pub(super) fn corner_colours(&self, triangle: &Triangle) -> Corners {
-        self.painting.corners(|| self.triangles.element_offset(triangle))
+    pub(super) fn corner_colours(&self, triangle: &Triangle, by: usize) -> Corners {
+        self.painting.corners(|| self.triangles.element_offset(triangle), by)
     }
 
     /// The cached corners on the screen; `None` if one is not cached.
@@ -107,7 +108,7 @@ impl MeshPass<'_> {
     /// pixels. The band is `width` pixels wide, and `rows` are its first row and one past its last. Returns the sum.
     pub(super) fn set_up(&self, triangle: &Triangle, width: i32, rows: [i32; 2], draw: &mut dyn FnMut(&TriangleSetup<'_>) -> u32) -> u32 {
         let target = &mut Target { width, rows, draw };
-        let albedos = self.corner_colours(triangle);
+        let albedos = self.corner_colours(triangle, 0);
         match self.corners(triangle).filter(is_ready) {
             Some(corners) => self.set_up_placed(&MeshTriangle { corners, triangle, vertices: self.vertices, albedos }, target),
             None => self.transform_anew(triangle, albedos, target),
@@ -165,6 +166,7 @@ impl MeshPass<'_> {
             gradients: &gradients,
             corners: turn(placed.corners, screen.turned),
             albedos: painting::lent(&albedos),
+            nodes_of_colours: [Middles::IN_SPACE; COLOURED],
             turned: screen.turned,
             triangle: placed.triangle,
             vertices: placed.vertices,

@@ -15,7 +15,7 @@ use crate::{
     },
     method::{
         Shading, TriangleSetup,
-        node::Node,
+        node::{Node, map_six},
         products::{LinearNodes, QuadraticNodes, fitted, linear, quadratic, signed},
         weakening::{Change, Way},
     },
@@ -66,7 +66,7 @@ impl<W: Patch<Walker: Walker<Value = [u32; 2]>>> Coloured<'_, W> {
         for (sums, highlights) in levels.iter_mut().zip(&*self.highlights).take(run).rev() {
             walkers.iter_mut().for_each(Walker::step);
             let [[red, green], [blue, _]] = walkers.each_ref().map(Walker::value);
-            let reflected = zip(*sums, [red, green, blue], |level, walked| (i64::from(level) * share(walked) >> 16) as i32);
+            let reflected = zip(*sums, [red, green, blue], |level, walked| ((i64::from(level) * share(walked)) >> 16) as i32);
             *sums = zip(reflected, *highlights, i32::wrapping_add);
         }
     }
@@ -77,15 +77,11 @@ fn share(walked: u32) -> i64 {
     i64::from(signed(walked).max(0) >> (COSINE - 16))
 }
 
-/// The shares of red and green, and of blue, over a triangle whose corners have these colours.
-fn ways(albedos: &[Albedo; 3]) -> [Way; 2] {
-    let [a, b, c] = albedos.map(|albedo| map(albedo.shares(), |share| share << (COSINE - 16)));
-    let linear = |k: usize| {
-        let (a, b, c) = (a[k], b[k], c[k]);
-        let middle = |a: i32, b: i32| (a >> 1) + (b >> 1);
-        [a, b, c, middle(a, b), middle(b, c), middle(c, a)]
-    };
-    [quadratic([linear(0), linear(1)]), quadratic([linear(2), [0; 6]])]
+/// The shares of red and green, and of blue, over a triangle, whose colours are these at the six nodes of a quadratic.
+fn ways(colours: &[Albedo; 6]) -> [Way; 2] {
+    let [a, b, c, ab, bc, ca] = map_six(*colours, |albedo| map(albedo.shares(), |share| share << (COSINE - 16)));
+    let channel = |k: usize| [a[k], b[k], c[k], ab[k], bc[k], ca[k]];
+    [quadratic([channel(0), channel(1)]), quadratic([channel(2), [0; 6]])]
 }
 
 /// How a light changes over a triangle: nothing in a program without the feature.
@@ -370,7 +366,7 @@ impl Shading<'_> {
         let dark = zip(ambient, pure, i32::wrapping_sub);
         let mut rooms = room.iter_mut();
         let colour = setup.albedos.map(|albedos| {
-            let ways = ways(albedos?).map(&walked);
+            let ways = ways(&setup.colours_at_nodes(albedos?)).map(&walked);
             Some(Coloured { ways, dark, highlights: rooms.next()? })
         });
         let ambient = if setup.albedos().is_some() { pure } else { ambient };

@@ -24,15 +24,14 @@ mod weakening;
 
 use crate::{
     arch::product::by_fraction,
-    features::{ALWAYS_CONSTANT, COLOURS, PERSPECTIVE, SKIPS},
+    features::{ALWAYS_CONSTANT, COLOURED, COLOURS, PERSPECTIVE, SKIPS},
     format::{BIAS, CHANNEL, INTENSITY, LEVEL, NORMAL_LENGTH, WALK},
     geometry::viewport::first_centre,
     interpolate::{Checkerboard, perspective::PerspectivePatch},
     lighting::{
-        albedo::{Albedo, IfColoured, Parts},
+        albedo::{Albedo, IfColoured},
         material_tables::MaterialTables,
     },
-    math::vector::zip,
     pixel::{Pixel, half_step, ramps::Ramps},
     raster::{
         active::ActiveTriangle,
@@ -233,6 +232,8 @@ pub struct TriangleSetup<'f> {
     pub corners: [&'f ScreenVertex; 3],
     /// The colours of the corners, if they have any.
     pub(crate) albedos: IfColoured<Option<&'f [Albedo; 3]>>,
+    /// The middles of the edges where a quadratic on the screen has the nodes of colours.
+    pub(crate) nodes_of_colours: IfColoured<Middles>,
     /// The triangle's record in the stream.
     #[doc(hidden)]
     pub triangle: &'f Triangle,
@@ -347,7 +348,7 @@ impl TriangleSetup<'_> {
     /// Copies the set-up without perspective, for methods whose polynomials on the screen have nodes in perspective.
     #[must_use]
     pub(crate) fn on_screen(&self) -> TriangleSetup<'_> {
-        TriangleSetup { perspective: false, ..*self }
+        TriangleSetup { perspective: false, nodes_of_colours: [self.middles(); COLOURED], ..*self }
     }
 
     /// Sorts three numbers that belong to the edges of the triangle in the mesh file into the order of the edges here: 0-1, 1-2, 2-0.
@@ -470,10 +471,10 @@ impl TriangleSetup<'_> {
     }
 }
 
-/// The levels of corners of these colours, whose vertices hold [`Parts`].
+/// The levels of corners of these colours, whose vertices hold [`Parts`](crate::lighting::albedo::Parts).
 #[inline(never)]
-fn painted(albedos: &[Albedo; 3], [a, b, c]: [&ScreenVertex; 3]) -> [[i32; 3]; 3] {
-    zip(*albedos, [a.light, b.light, c.light], |albedo, light| albedo.lit(Parts::of_vertex(light)))
+fn painted([x, y, z]: &[Albedo; 3], [a, b, c]: [&ScreenVertex; 3]) -> [[i32; 3]; 3] {
+    [x.lit_vertex(a.light), y.lit_vertex(b.light), z.lit_vertex(c.light)]
 }
 
 /// An area of the screen that can be shaded: a triangle ([`TriangleSetup`]) or a part of one.

@@ -167,7 +167,7 @@ fn one_light(setup: &TriangleSetup<'_>, shading: &Shading<'_>, [towards, _]: &Co
             return None;
         }
         // The range of the product.
-        diffuse += (range * brightest.min(FULL as u32) >> SHARE) + 1;
+        diffuse += ((range * brightest.min(1 << SHARE)) >> SHARE) + 1;
     }
     let range = || {
         let [least, most] = reflected();

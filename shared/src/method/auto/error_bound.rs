@@ -318,7 +318,7 @@ impl ErrorBounds {
     /// range (Popoviciu).
     #[inline]
     pub(crate) fn of_product(&self, colour: u32, level: u32) -> u32 {
-        ((colour * level.min(FULL as u32)) >> (SHARE + 2)) + 1
+        ((colour * level.min(1 << SHARE)) >> (SHARE + 2)) + 1
     }
 
     /// A bound of what the quadratic through six nodes is farther off where the colour of the surface differs by `range`, Q0.16, between corners: a
@@ -336,7 +336,7 @@ impl ErrorBounds {
             let (Interval { below, above }, _) = light.diffuse(curvature, towards);
             most += below.max(above);
         }
-        (range * most.min(FULL as u32) >> SHARE) / 3 + 1
+        ((range * most.min(1 << SHARE)) >> SHARE) / 3 + 1
     }
 
     /// A bound of the quadratic through corners and midpoints of edges, in 1/255 of full intensity, Q9.7.

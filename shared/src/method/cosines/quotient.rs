@@ -184,6 +184,12 @@ fn draw_coloured<C: Pixel>(
     let [a, b, c] = *albedos;
     if a == b && b == c {
         let sums = &tables.painted_sums(a);
+        if setup.leaves_out_highlight(tables.reflectance, &cosines[1]) {
+            setup.count(band.top, &mut band.counts.without_highlight, 1);
+            let (colours, at) = (OneLightRgb::of(sums), Quotient(HalfRsqrt::get()));
+            let patch = || diffuse_patch(setup, colours.diffuse(), &cosines[0], lengths);
+            return Some(setup.fill(patch, LitShader::of::<DiffuseOnly>(colours, at), band));
+        }
         return Some(draw_rgb(setup, cosines, lengths, OneLightRgb::of(sums), tables.reflectance.table()?, band));
     }
     let colours = tables.coloured_rgb();
