@@ -59,7 +59,7 @@ pub struct Rules {
 /// What becomes of the colours that a file has in textures and at its vertices.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub enum Colours {
-    /// They are left out, and images are not read.
+    /// Colours are left out, and images are not read.
     None,
     /// Triangles have colours at their corners.
     #[default]

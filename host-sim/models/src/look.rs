@@ -332,7 +332,7 @@ fn palettes(parts: &[Part]) -> Result<(Vec<u8>, Vec<Colour>)> {
         if part.palette.is_empty() {
             return Ok(0);
         }
-        let next = colours.len().next_multiple_of(PALETTE) / PALETTE;
+        let next = colours.len().div_ceil(PALETTE);
         let number = *known.entry(part.palette.clone()).or_insert(next);
         if number == next {
             colours.resize(next * PALETTE, BLACK);

@@ -184,7 +184,7 @@ fn colours_at(corner: &CornerColours, palette: &[Colour]) -> Option<[Colour; 3]>
     Some([a?, b?, c?])
 }
 
-/// Those of a list whose numbers are `kept`.
+/// The items of a list whose numbers are `kept`.
 fn those<T: Copy>(all: &[T], kept: impl Fn(usize) -> bool) -> Vec<T> {
     all.iter().enumerate().filter(|&(k, _)| kept(k)).map(|(_, &one)| one).collect()
 }

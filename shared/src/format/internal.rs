@@ -38,6 +38,8 @@ pub const ROTATION: u32 = 30;
 pub const COSINE: u32 = 30;
 /// Fraction bits of a light level at a node, in 1/255 of full intensity (LSB): Q9.7 held in an `i32`.
 pub const LEVEL: u32 = 7;
+/// The largest light level of a node: 255.
+pub const FULL: i32 = 255 << LEVEL;
 /// Fraction bits of a level while it is walked along a span. Levels are unsigned Q9.23, or Q9.22 below one more bit: see
 /// [`crate::pixel::ramps::Ramps::BITS`].
 pub const WALK: u32 = 23;

@@ -8,8 +8,7 @@
 use crate::{
     arch::product::unsigned_product,
     features::COLOURED,
-    format::LEVEL,
-    lighting::reflectance::FULL,
+    format::{FULL, LEVEL},
     math::vector::{map, zip},
     stream::record::Colour,
 };

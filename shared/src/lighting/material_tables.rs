@@ -2,11 +2,11 @@
 
 use crate::{
     features::{COLOURS, LIGHTS},
-    format::{BIAS, CHANNEL, COSINE, INTENSITY, LEVEL, WALK},
+    format::{BIAS, CHANNEL, COSINE, FULL, INTENSITY, LEVEL, WALK},
     lighting::{
         albedo::Albedo,
         constant_lights::{ColouredRgb, FACTOR, OneLightRamp, OneLightRgb, SummedRgb, Sums, TwoLightsRgb},
-        reflectance::{FULL, LitMaterial, Reflectance},
+        reflectance::{LitMaterial, Reflectance},
     },
     math::vector::zip,
     pixel::{Pixel, by_rows::ByTurns, gamma::Gamma, half_step, ramps::Ramps, steps},

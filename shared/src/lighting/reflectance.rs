@@ -6,7 +6,7 @@ use crate::{
         quotient::long,
     },
     features::{COLOURS, LIGHT_SHAPES, LIGHTS, SKIPS, VERTEX_COLOURS},
-    format::{BIAS, CHANNEL, COSINE, Intensity, LEVEL, PIXEL_COSINE, UNIT},
+    format::{BIAS, CHANNEL, COSINE, FULL, Intensity, LEVEL, PIXEL_COSINE, UNIT},
     lighting::{
         albedo::Parts,
         constant_lights::{FACTOR, LARGEST, Sum, Sums},
@@ -26,9 +26,6 @@ use zerocopy::{FromBytes, Immutable, IntoBytes, KnownLayout};
 
 /// [`Reflectance::lights`] where the diffuse light of all lights is summed.
 pub const SUMMED: u8 = 3;
-
-/// Largest level of a node, Q9.7.
-pub const FULL: i32 = 255 << LEVEL;
 
 /// The quantity that is raised to the exponent `n` of a material. Each is scaled so that all methods give highlights of one width.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]

@@ -3,9 +3,10 @@
 use super::costs::SAVINGS;
 use crate::{
     features::PERSPECTIVE,
+    format::FULL,
     lighting::{
         albedo::{Albedo, SHARE},
-        reflectance::{FULL, LitMaterial},
+        reflectance::LitMaterial,
     },
     method::{
         CornerCosines, Shading, TriangleSetup,

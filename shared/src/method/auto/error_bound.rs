@@ -16,11 +16,8 @@
 
 use crate::{
     arch::product::unsigned_product,
-    format::{COSINE, HAVERSINE, NORMAL_LENGTH},
-    lighting::{
-        albedo::SHARE,
-        reflectance::{FULL, LitMaterial},
-    },
+    format::{COSINE, FULL, HAVERSINE, NORMAL_LENGTH},
+    lighting::{albedo::SHARE, reflectance::LitMaterial},
     method::{
         CornerCosines,
         auto::highlight_error::{self, TablePlace, USUAL_EXPONENT},

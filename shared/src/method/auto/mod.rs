@@ -18,12 +18,9 @@ pub mod error_bound;
 pub mod highlight_error;
 
 use crate::{
+    format::FULL,
     interpolate::{Constant, by_column::ByColumn},
-    lighting::{
-        albedo::Albedo,
-        material_tables::MaterialTables,
-        reflectance::{FULL, LitMaterial},
-    },
+    lighting::{albedo::Albedo, material_tables::MaterialTables, reflectance::LitMaterial},
     math::vector::zip,
     method::{
         DrawTriangle, Facts, HighlightField, Loops, Method, RANGE, Shading, Style, TriangleSetup, VertexLight,

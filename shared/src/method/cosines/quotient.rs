@@ -4,6 +4,7 @@
 use crate::{
     arch::product::upper,
     features::VERTEX_COLOURS,
+    format::FULL,
     interpolate::{
         Constant,
         by_column::ByColumn,
@@ -15,7 +16,6 @@ use crate::{
         albedo::{Albedo, SHARE},
         constant_lights::{COLOUR, Coloured, DiffuseOnly, LitColours, OneLightRamp, OneLightRgb, Shades, WithHighlight, node},
         material_tables::MaterialTables,
-        reflectance::FULL,
     },
     math::{highlight_lookup, highlight_lookup::QuotientLookup, highlight_lut::HighlightLut, rsqrt::HalfRsqrt, vector::map},
     method::{
