@@ -15,6 +15,7 @@ use crate::{
     obj::LARGEST,
     pbr,
     texture::{Images, Texture},
+    transform::Transform,
     vector::{V3, add, apply, scale, unit},
 };
 use accessor::{Bytes, Kind};
@@ -22,7 +23,7 @@ use anyhow::{Context, Result, bail};
 use compressed::Draco;
 pub(crate) use document::is_gltf;
 use gltf::{Document, Node, Primitive, Semantic, material::AlphaMode, mesh::Mode, texture::Info};
-use pose::{Skin, Transform};
+use pose::Skin;
 use std::collections::{BTreeSet, HashSet};
 
 /// The contents of a glTF file.

@@ -1,60 +1,13 @@
 //! Where nodes and skins put the vertices of a mesh, in the pose in which a file is stored.
 
 use super::accessor::{Bytes, Kind};
-use crate::vector::{V3, add, apply, cross, dot, product, scale};
+use crate::transform::Transform;
 use anyhow::{Result, ensure};
 use gltf::{Document, Node};
 
-/// A linear map and a translation.
-#[derive(Clone, Copy, Debug)]
-pub(super) struct Transform {
-    rows: [V3; 3],
-    to: V3,
-}
-
-impl Transform {
-    pub(super) const NONE: Self = Self { rows: [[1.0, 0.0, 0.0], [0.0, 1.0, 0.0], [0.0, 0.0, 1.0]], to: [0.0; 3] };
-    const NOTHING: Self = Self { rows: [[0.0; 3]; 3], to: [0.0; 3] };
-
-    fn of(node: &Node<'_>) -> Self {
-        Self::of_columns(&node.transform().matrix().map(|column| column.map(f64::from)))
-    }
-
-    fn of_columns(columns: &[[f64; 4]; 4]) -> Self {
-        Self { rows: [0, 1, 2].map(|row| [0, 1, 2].map(|column| columns[column][row])), to: [0, 1, 2].map(|row| columns[3][row]) }
-    }
-
-    /// First `inner`, then this.
-    fn then(&self, inner: &Self) -> Self {
-        Self { rows: product(&self.rows, &inner.rows), to: self.point(inner.to) }
-    }
-
-    /// Adds a share of another transform.
-    fn plus(&self, other: &Self, share: f64) -> Self {
-        let sum = |a: V3, b: V3| add(a, scale(b, share));
-        Self { rows: [0, 1, 2].map(|row| sum(self.rows[row], other.rows[row])), to: sum(self.to, other.to) }
-    }
-
-    pub(super) fn point(&self, point: V3) -> V3 {
-        add(apply(&self.rows, point), self.to)
-    }
-
-    /// Whether directions change.
-    pub(super) fn turns(&self) -> bool {
-        self.rows != Self::NONE.rows
-    }
-
-    /// Turns normals: the inverse transpose, but for a factor that is not negative.
-    pub(super) fn of_normals(&self) -> [V3; 3] {
-        let [a, b, c] = self.rows;
-        let sign = if self.mirrors() { -1.0 } else { 1.0 };
-        [cross(b, c), cross(c, a), cross(a, b)].map(|row| scale(row, sign))
-    }
-
-    pub(super) fn mirrors(&self) -> bool {
-        let [a, b, c] = self.rows;
-        dot(a, cross(b, c)) < 0.0
-    }
+/// What a node does to what is in it.
+fn of(node: &Node<'_>) -> Transform {
+    Transform::of_columns(&node.transform().matrix().map(|column| column.map(f64::from)))
 }
 
 /// Where each node of a document stands in its scene, by the transforms of its parents. In a circle of nodes, which no scene has, they end somewhere.
@@ -64,7 +17,7 @@ pub(super) fn of_nodes(document: &Document) -> Vec<Transform> {
     for node in document.nodes() {
         node.children().for_each(|child| parents[child.index()] = Some(node.index()));
     }
-    let own: Vec<_> = document.nodes().map(|node| Transform::of(&node)).collect();
+    let own: Vec<_> = document.nodes().map(|node| of(&node)).collect();
     let mut places: Vec<Option<Transform>> = vec![None; count];
     for node in 0..count {
         // Upwards to a node whose place is known, then down again.
