@@ -6,6 +6,7 @@ use microphong_tests::program;
 use serde_json::Value;
 use std::{
     fs,
+    io::Write,
     path::Path,
     process::{Command, Output},
 };
@@ -242,7 +243,7 @@ fn other_files_say_what_they_are_and_what_helps() {
         (b"Kaydara FBX Binary  \0", ["the format FBX", "assimp export"]),
         (b"; FBX 7.3.0 project file\n", ["the format FBX", "assimp export"]),
         (b"BLENDER-v402", ["the format Blender", "assimp export"]),
-        (b"PK\x03\x04\x14\0\0\0 3D/3dmodel.model", ["the format 3MF", "assimp export"]),
+        (b"PK\x03\x04\x14\0\0\0 3D/3dmodel.model", ["3MF: the archive is damaged or cut off", "get the file again"]),
         (b"PK\x03\x04\x14\0\0\0 a.obj", ["compressed by zip", "unzip"]),
         (b"\x1F\x8B\x08\0", ["compressed by gzip", "gunzip -c"]),
         (b"version https://git-lfs.github.com/spec/v1\noid sha256:0\nsize 9\n", ["a pointer of Git LFS", "git lfs pull"]),
@@ -272,8 +273,10 @@ fn other_files_say_what_they_are_and_what_helps() {
         ("l.ply", b"ply\nformat ascii 1.0\nelement vertex three\n", "PLY, line 3: Couldn't parse line: a header has lines with `format`"),
         ("e.glb", b"glTF\x02\0\0\0\xFF\0\0\0", "GLB: the file is shorter than its head says; it was cut off"),
         ("f.gltf", b"{\"asset\": {\"version\": \"2.0\"}", "it was cut off"),
+        ("m.3mf", b"v 0 0 0\n", "m.3mf: 3MF: the file is no zip archive, as 3MF is"),
+        ("n.3mf", b"PK\x05\x06", "n.3mf: 3MF: the archive is damaged or cut off"),
         ("g.obj", b"", "the file is empty"),
-        ("h.obj", b"Dear reader,\nthis is a letter.\n", "nothing in the file is OBJ, glTF, STL or PLY"),
+        ("h.obj", b"Dear reader,\nthis is a letter.\n", "nothing in the file is OBJ, glTF, STL, PLY or 3MF"),
         ("i.obj", b"v 0 0 0\nv 1 0 0\nv 0 1 0\n", "the mesh has no faces; export it with polygons"),
     ] {
         let error = place.file(file, bytes).refuses(file);
@@ -448,4 +451,72 @@ fn gltf_has_the_colours_of_textures_and_vertices() {
     assert!(said.contains("1 triangle has 1 colour of textures and vertices") && !said.contains("left out"), "{said}");
     let [[0, 127..=128, 255]] = place.palette()[..] else { panic!("{:?}", place.palette()) };
     assert_eq!(place.colours(), [[1.0; 3]]);
+}
+
+/// A 3MF file as a slicer writes it: the mesh and its colours in a part of their own, and a plate on which it stands twice.
+#[test]
+fn a_3mf_file_is_converted_whatever_its_name_is() {
+    let place = Place::new();
+    let coordinates =
+        |line: &str| line[2..].split(' ').zip(["x", "y", "z"]).map(|(c, axis)| format!(" {axis}=\"{c}\"")).collect::<String>();
+    let vertices: String = CORNERS.lines().map(|line| format!("<vertex{}/>", coordinates(line))).collect();
+    let triangles: String = SIDES
+        .iter()
+        .enumerate()
+        .flat_map(|(side, face)| {
+            let [a, b, c, d] =
+                [0, 1, 2, 3].map(|k| face[2..].split_whitespace().nth(k).and_then(|c| c.parse::<u32>().ok()).expect("a corner") - 1);
+            let colour = side % 3;
+            [[a, b, c], [a, c, d]].map(|[a, b, c]| format!("<triangle v1=\"{a}\" v2=\"{b}\" v3=\"{c}\" pid=\"2\" p1=\"{colour}\"/>\n"))
+        })
+        .collect();
+    let model = |resources: &str, build: &str| {
+        format!(
+            "<?xml version=\"1.0\" encoding=\"UTF-8\"?>\n<model unit=\"millimeter\" xmlns=\"http://schemas.microsoft.com/3dmanufacturing/core/2015/02\" xmlns:m=\"http://schemas.microsoft.com/3dmanufacturing/material/2015/02\" xmlns:p=\"http://schemas.microsoft.com/3dmanufacturing/production/2015/06\" requiredextensions=\"p\">\n<resources>{resources}</resources>\n<build>{build}</build>\n</model>\n"
+        )
+    };
+    let colours =
+        "<m:colorgroup id=\"2\"><m:color color=\"#FF0000\"/><m:color color=\"#00FF00\"/><m:color color=\"#0000FF\"/></m:colorgroup>";
+    let mesh =
+        format!("{colours}<object id=\"1\"><mesh><vertices>{vertices}</vertices><triangles>\n{triangles}</triangles></mesh></object>");
+    let plate =
+        "<object id=\"8\" name=\"cube\"><components><component p:path=\"/3D/Objects/a.model\" objectid=\"1\"/></components></object>";
+    let items = "<item objectid=\"8\"/><item objectid=\"8\" transform=\"1 0 0 0 1 0 0 0 1 4 0 0\"/>";
+    let parts = |mesh: &str| packed(&[("3D/3dmodel.model", &model(plate, items)), ("3D/Objects/a.model", &model(mesh, ""))]);
+    for file in ["a.3mf", "a.zip", "a.obj", "a"] {
+        let said = place.file(file, parts(&mesh)).converts(&[file]);
+        assert!(said.contains("3 materials are made for colours of textures and vertices: no face is farther"), "{said}");
+        assert!(said.contains("objects of the same name have numbers: \"cube 2\"") && !said.contains("left out"), "{said}");
+        assert_eq!(place.counts(file)["triangles"], 24);
+    }
+    let sorted = |place: &Place| {
+        let mut colours = place.colours();
+        colours.sort_by(|a, b| b.partial_cmp(a).expect("numbers"));
+        colours
+    };
+    assert_eq!(sorted(&place), [[1.0, 0.0, 0.0], [0.0, 1.0, 0.0], [0.0, 0.0, 1.0]]);
+    place.converts(&["a.3mf", "--colour", "ff0000", "--merge"]);
+    assert!(place.run(&["render", "a.3mf"]).status.success());
+    let error = place.file("b.3mf", parts(&mesh.replace("v3=\"7\"", "v3=\"8\""))).refuses("b.3mf");
+    let words = "b.3mf: 3MF: 3D/Objects/a.model: line 6: object 1, triangle 3: v3: vertex 8 is out of range; they count from 0, and the object has 8";
+    assert!(error.contains(words), "{error}");
+    let error = place.file("c.3mf", packed(&[("notes.txt", "v 0 0 0")])).refuses("c.3mf");
+    assert!(error.contains("c.3mf: 3MF: the archive has no model") && error.contains("unpack it, or else export it again"), "{error}");
+    // The same archive under another name is one that somebody has to unpack.
+    assert!(place.file("c.zip", packed(&[("a.obj", "v 0 0 0")])).refuses("c.zip").contains("compressed by zip"));
+}
+
+/// An archive of these parts, which are not compressed.
+fn packed(parts: &[(&str, &str)]) -> Vec<u8> {
+    let mut bytes = Vec::new();
+    let mut archive = rawzip::ZipArchiveWriter::new(&mut bytes);
+    for (name, part) in parts {
+        let (mut entry, config) = archive.new_file(*name).start().expect("a part");
+        let mut writer = config.wrap(&mut entry);
+        writer.write_all(part.as_bytes()).expect("bytes");
+        let (_, descriptor) = writer.finish().expect("bytes");
+        entry.finish(descriptor).expect("a part");
+    }
+    archive.finish().expect("an archive");
+    bytes
 }

@@ -40,7 +40,7 @@ impl Faults {
     }
 
     /// Says each kind in a sentence.
-    pub(crate) fn sentences(&self) -> impl Iterator<Item = String> {
+    pub fn sentences(&self) -> impl Iterator<Item = String> {
         self.0.iter().map(Fault::to_string)
     }
 }

@@ -24,11 +24,10 @@ use Remedy::{Advice, Cad, Model, Packed, Scene};
 type Format = (&'static str, Remedy);
 
 /// Endings of files that are not known by their contents, or not always.
-const ENDINGS: [(&[&str], Format); 18] = [
+const ENDINGS: [(&[&str], Format); 17] = [
     (&["fbx"], ("FBX", Model)),
     (&["dae"], ("COLLADA", Model)),
     (&["3ds"], ("3DS", Model)),
-    (&["3mf"], ("3MF", Model)),
     (&["off"], ("OFF", Model)),
     (&["blend"], ("Blender", Model)),
     (&["x3d"], ("X3D", Model)),
@@ -148,7 +147,7 @@ fn said(path: &Path, format: &str, remedy: Remedy) -> String {
         let other = path.with_extension(ending);
         if other == path { path.with_extension(format!("new.{ending}")) } else { other }
     };
-    let needed = "OBJ, glTF, STL or PLY is needed";
+    let needed = "OBJ, glTF, STL, PLY or 3MF is needed";
     match remedy {
         Model => format!(
             "{name}: a mesh in the format {format}; {needed}: export it as OBJ, for example with Blender, or run\n  assimp export {name} {}",
@@ -177,7 +176,7 @@ fn by_content(path: &Path, bytes: &[u8]) -> Option<Format> {
     if let Some(&(_, format)) = BEGINNINGS.iter().find(|(start, _)| begins(start)) {
         let is_packed = matches!(format.1, Packed(_));
         // Some formats are archives, and have the ending of the format.
-        return Some(by_ending(path).filter(|_| is_packed).or_else(|| archived(bytes).filter(|_| is_packed)).unwrap_or(format));
+        return Some(by_ending(path).filter(|_| is_packed).unwrap_or(format));
     }
     if text.starts_with(b"<") {
         let head = String::from_utf8_lossy(&text[..text.len().min(4096)]).to_lowercase();
@@ -208,12 +207,6 @@ fn stored_link(text: &[u8]) -> Option<Format> {
     let of_annex = ("a pointer of git-annex, which stands for the file", Advice("run `git annex get` in its repository"));
     let of_link = ("the path of another file, as Git stores a link", Advice("name that file"));
     is_path.then_some(if path.contains("annex/objects/") { of_annex } else { of_link })
-}
-
-/// The format of an archive by a file in it.
-fn archived(bytes: &[u8]) -> Option<Format> {
-    let has = |name: &[u8]| bytes[..bytes.len().min(1 << 16)].windows(name.len()).any(|part| part == name);
-    has(b"3D/3dmodel.model").then_some(("3MF", Model))
 }
 
 fn by_ending(path: &Path) -> Option<Format> {
@@ -282,8 +275,6 @@ mod tests {
         assert!(told("a.obj.gz", b"\x1F\x8B").ends_with("compressed by gzip; unpack it first:\n  gunzip -c a.obj.gz > a.obj"));
         assert!(told("a.obj", b"\x1F\x8B").ends_with("  gunzip -c a.obj > a.new.obj"));
         assert!(told("a.zip", b"PK\x03\x04\0").ends_with("unzip a.zip"));
-        assert!(told("a.zip", b"PK\x03\x04\0..3D/3dmodel.model").contains("3MF"));
-        assert!(told("a.3mf", b"PK\x03\x04\0").contains("assimp export a.3mf a.obj"));
         assert!(told("a.blend", b"\x28\xB5\x2F\xFD").contains("in the format Blender"));
         assert!(told("a.usdz", b"PK\x03\x04\0").contains("USD"));
     }

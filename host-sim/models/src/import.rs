@@ -15,6 +15,7 @@ use crate::{
     stl::{self, Stl},
     text,
     texture::{Images, Texture},
+    threemf,
 };
 use anyhow::{Context, Result, bail};
 use std::{collections::BTreeSet, path::Path};
@@ -93,7 +94,7 @@ struct Contents {
     remarks: Vec<String>,
 }
 
-/// Reads and welds an OBJ file with the files of its materials beside it, a glTF file with the buffers beside it, an STL or a PLY file.
+/// Reads and welds an OBJ file with the files of its materials beside it, a glTF file with the buffers beside it, an STL, a PLY or a 3MF file.
 ///
 /// # Errors
 /// Names the file and the place in it.
@@ -144,6 +145,10 @@ fn contents(path: &Path, bytes: &[u8], folder: &Folder, colours: Colours) -> Res
     let place = || path.display().to_string();
     let ends = |ending| path.extension().is_some_and(|e| e.eq_ignore_ascii_case(ending));
     let plain = Contents { materials: vec![None], ..Contents::default() };
+    // Of archives, which are refused otherwise, only these are read.
+    if threemf::is_3mf(bytes, ends("3mf")) {
+        return of_3mf(bytes).with_context(place);
+    }
     foreign::refuse(path, bytes)?;
     foreign::refuse_stream(path, bytes)?;
     if ply::is_ply(bytes) || ends("ply") {
@@ -155,6 +160,9 @@ fn contents(path: &Path, bytes: &[u8], folder: &Folder, colours: Colours) -> Res
             gltf::parse(bytes, folder, colours).with_context(place)?;
         return Ok(Contents { soup, objects, materials, textures, ignored, faults, remarks });
     }
+    if ends("3mf") {
+        return of_3mf(bytes).with_context(place);
+    }
     foreign::refuse_ending(path)?;
     if stl::is_stl(bytes, ends("stl")) {
         let Stl { soup, faults, ignored, remarks } = stl::parse(bytes).with_context(place)?;
@@ -162,10 +170,15 @@ fn contents(path: &Path, bytes: &[u8], folder: &Folder, colours: Colours) -> Res
     }
     let obj = obj::parse(&text::decoded(bytes)).with_context(place)?;
     if obj.soup.positions.is_empty() && obj.soup.faces.is_empty() {
-        let what = if bytes.is_empty() { "the file is empty" } else { "nothing in the file is OBJ, glTF, STL or PLY" };
-        bail!("{}: the mesh has no faces, because {what}; export it as one of OBJ, glTF, STL and PLY", place());
+        let what = if bytes.is_empty() { "the file is empty" } else { "nothing in the file is OBJ, glTF, STL, PLY or 3MF" };
+        bail!("{}: the mesh has no faces, because {what}; export it as one of OBJ, glTF, STL, PLY and 3MF", place());
     }
     with_libraries(folder, obj, colours).with_context(place)
+}
+
+fn of_3mf(bytes: &[u8]) -> Result<Contents> {
+    let threemf::Scene { soup, objects, materials, textures, ignored, faults, remarks } = threemf::parse(bytes)?;
+    Ok(Contents { soup, objects, materials, textures, ignored, faults, remarks })
 }
 
 /// An OBJ file with the materials of the files that it names.

@@ -32,6 +32,7 @@ mod split;
 pub mod stl;
 mod text;
 mod texture;
+pub mod threemf;
 mod transform;
 mod turn;
 pub mod view;

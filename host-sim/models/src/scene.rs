@@ -81,7 +81,7 @@ impl fmt::Display for Unknown {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         write!(
             f,
-            "unknown scene {:?}; name a .tri, .obj, .stl, .ply, .gltf, .glb or .toml file, or one of: {}, {}, {}",
+            "unknown scene {:?}; name a .tri, .obj, .stl, .ply, .gltf, .glb, .3mf or .toml file, or one of: {}, {}, {}",
             self.0,
             NAMES.join(", "),
             VARIANTS.join(", "),
@@ -151,7 +151,7 @@ pub fn load_with(name_or_path: &str, options: &Options, are_given: bool, steps: 
             size = scene.1;
             scene.0
         }
-        Some("obj" | "stl" | "ply" | "gltf" | "glb") => {
+        Some("obj" | "stl" | "ply" | "gltf" | "glb" | "3mf") => {
             let converted = Converted::read(path, options, steps)?;
             converted.faults.iter().for_each(|fault| warn(fault));
             converted.stream().with_context(|| name_or_path.to_owned())?

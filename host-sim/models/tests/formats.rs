@@ -90,6 +90,28 @@ impl Shape {
         bytes
     }
 
+    /// An archive with one model.
+    fn threemf(&self) -> Vec<u8> {
+        let element = |element: &str, names: [&str; 3], values: [String; 3]| {
+            let values: String = names.iter().zip(values).map(|(name, value)| format!(" {name}=\"{value}\"")).collect();
+            format!("<{element}{values}/>\n")
+        };
+        let vertices: String =
+            self.positions.iter().map(|p| element("vertex", ["x", "y", "z"], p.map(|c| f64::from(c).to_string()))).collect();
+        let triangles: String = self.triangles.iter().map(|t| element("triangle", ["v1", "v2", "v3"], t.map(|v| v.to_string()))).collect();
+        let mesh = format!("<mesh><vertices>{vertices}</vertices><triangles>{triangles}</triangles></mesh>");
+        let model = format!("<model><resources><object id=\"1\">{mesh}</object></resources><build><item objectid=\"1\"/></build></model>");
+        let mut bytes = Vec::new();
+        let mut archive = rawzip::ZipArchiveWriter::new(&mut bytes);
+        let (mut entry, config) = archive.new_file("3D/3dmodel.model").start().unwrap();
+        let mut writer = config.wrap(&mut entry);
+        std::io::Write::write_all(&mut writer, model.as_bytes()).unwrap();
+        let (_, descriptor) = writer.finish().unwrap();
+        entry.finish(descriptor).unwrap();
+        archive.finish().unwrap();
+        bytes
+    }
+
     /// The document and the bytes of its only buffer.
     fn gltf(&self) -> (Value, Vec<u8>) {
         let floats = |list: &[[f32; 3]]| list.iter().flatten().flat_map(|c| c.to_le_bytes()).collect::<Vec<_>>();
@@ -183,6 +205,10 @@ fn a_mesh_is_the_same_stream_in_every_format() {
         let inside: String = bytes.iter().map(|byte| format!("%{byte:02x}")).collect();
         document["buffers"][0]["uri"] = format!("data:application/octet-stream,{inside}").into();
         assert!(stream(&place.file("inside.gltf", format!("\u{FEFF}{document:#}"))) == expected);
+        // It has no normals.
+        if shape.normals.is_empty() {
+            assert!(stream(&place.file("a.3mf", shape.threemf())) == expected);
+        }
     }
 }
 

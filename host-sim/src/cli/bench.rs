@@ -34,8 +34,8 @@ use std::path::{Path, PathBuf};
 #[derive(clap::Args)]
 #[command(after_help = EXAMPLES)]
 pub(crate) struct Arguments {
-    /// .tri, .obj, .stl, .ply, .gltf, .glb and .toml files, names of built-in scenes, or `all` for every built-in scene. By default six scenes of common
-    /// kinds: large and small triangles, in one hue, in blue with a white highlight, and under two coloured lights.
+    /// .tri, .obj, .stl, .ply, .gltf, .glb, .3mf and .toml files, names of built-in scenes, or `all` for every built-in scene. By default six scenes of
+    /// common kinds: large and small triangles, in one hue, in blue with a white highlight, and under two coloured lights.
     #[arg(value_name = "SCENE", default_values = scene::PORTFOLIO)]
     scenes: Vec<String>,
     /// Shading methods, separated by commas, or `all` for every method that can draw the scene.

@@ -25,7 +25,7 @@ use std::path::PathBuf;
 #[derive(clap::Args)]
 #[command(after_help = EXAMPLES)]
 pub(crate) struct Arguments {
-    /// .tri, .obj, .stl, .ply, .gltf, .glb and .toml files, names of built-in scenes, or `all` for every built-in scene.
+    /// .tri, .obj, .stl, .ply, .gltf, .glb, .3mf and .toml files, names of built-in scenes, or `all` for every built-in scene.
     #[arg(required = true, value_name = "SCENE")]
     scenes: Vec<String>,
     /// Shading methods by name, separated by commas, or all.

@@ -31,18 +31,19 @@ use microphong_sim::{
 use serde::Serialize;
 use std::path::{Path, PathBuf};
 
-/// Convert a model file (OBJ, glTF 2.0, STL, PLY) to a stream, the mesh file of a program
+/// Convert a model file (OBJ, glTF 2.0, STL, PLY, 3MF) to a stream, the mesh file of a program
 ///
 /// Normals come from the file if at least half of the corners have one. Other normals are computed: light is smooth within each smoothing group of the
 /// file. If there are no groups, light is smooth across edges that fold by no more than --crease. Polygons, also concave ones, are cut into triangles.
 /// Materials come from the .mtl file beside an .obj file (Kd, Ks, Ka, Ns), or from the .gltf or .glb file (base colour, metallic, roughness). Of a glTF
-/// file the default scene is converted, where its nodes and skins put it. The command prints everything in the file that it ignores.
+/// file the default scene is converted, where its nodes and skins put it. Of a 3MF file the items to be built are converted. The command prints everything in
+/// the file that it ignores.
 ///
 /// A model may name other files, such as materials and buffers. They are opened only if they are regular files in the folder of the model. A file may have
 /// at most 1 GiB.
 ///
 /// Each object of the file keeps its name, and a program can find it by this name. An object is an `o` of OBJ (or a `g`, if the file has at most one
-/// `o`), or a node of glTF. An object has one mesh in the stream for each of its materials.
+/// `o`), a node of glTF, or a mesh of 3MF. An object has one mesh in the stream for each of its materials.
 ///
 /// The mesh is centred and scaled to a sphere of radius 1. A single closed convex mesh is marked, so that it is drawn without depth test. This does not
 /// change its picture.
@@ -187,7 +188,9 @@ struct Level {
 pub(crate) fn run(arguments: &Arguments) -> Result<Outcome> {
     let source = &arguments.mesh;
     if source.extension().is_some_and(|e| e.eq_ignore_ascii_case("tri")) {
-        return Err(Usage(format!("{} is already a stream; name an .obj, .stl, .ply, .gltf, .glb or .toml file", source.display())).into());
+        return Err(
+            Usage(format!("{} is already a stream; name an .obj, .stl, .ply, .gltf, .glb, .3mf or .toml file", source.display())).into()
+        );
     }
     let board = arguments.board.as_deref().and_then(Board::named);
     let shader = arguments.shader.unwrap_or(Shader::AUTO);

@@ -22,7 +22,7 @@ use std::path::Path;
     after_help = "Examples:\n  microphong inspect teapot.tri --json\n  microphong inspect gauges\n  microphong inspect scan.ply --simplify 2000"
 )]
 pub(crate) struct Arguments {
-    /// A stream from `microphong convert`, a built-in scene, or an .obj, .stl, .ply, .gltf, .glb or .toml file.
+    /// A stream from `microphong convert`, a built-in scene, or an .obj, .stl, .ply, .gltf, .glb, .3mf or .toml file.
     scene: String,
     /// Print one JSON object.
     #[arg(long)]

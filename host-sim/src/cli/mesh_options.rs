@@ -14,7 +14,7 @@ use microphong_sim::{
 
 /// Options that describe the surface, light and view of a mesh file; other scenes have their own.
 #[derive(clap::Args, Clone)]
-#[command(next_help_heading = "Options for model files (.obj, .stl, .ply, .gltf, .glb)")]
+#[command(next_help_heading = "Options for model files (.obj, .stl, .ply, .gltf, .glb, .3mf)")]
 pub(crate) struct MeshOptions {
     /// Axis of the mesh that points up: x, y, z, -x, -y or -z.
     #[arg(long, default_value = "y", value_parser = parse::up, allow_hyphen_values = true)]

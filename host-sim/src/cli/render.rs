@@ -23,7 +23,7 @@ use std::{
 #[derive(clap::Args)]
 #[command(after_help = EXAMPLES)]
 pub(crate) struct Arguments {
-    /// A .tri, .obj, .stl, .ply, .gltf, .glb or .toml file, or a built-in scene; `microphong scenes` lists the built-in scenes.
+    /// A .tri, .obj, .stl, .ply, .gltf, .glb, .3mf or .toml file, or a built-in scene; `microphong scenes` lists the built-in scenes.
     scene: String,
     /// Shading method. The default is the method of the scene. `microphong compare` compares methods.
     #[arg(long, value_parser = parse::Shaders)]

@@ -26,7 +26,7 @@ use std::path::{Path, PathBuf};
 #[derive(clap::Args)]
 #[command(after_help = EXAMPLES)]
 pub(crate) struct Arguments {
-    /// A .tri, .obj, .stl, .ply, .gltf, .glb or .toml file, or a built-in scene.
+    /// A .tri, .obj, .stl, .ply, .gltf, .glb, .3mf or .toml file, or a built-in scene.
     #[arg(value_name = "SCENE", default_value = baseline::SCENE)]
     scene: String,
     /// Chips, separated by commas: stm32f103 (Cortex-M3), samd21, rp2040 (Cortex-M0+), stm32f411, nrf52840 (Cortex-M4F), rp2350 (Cortex-M33),

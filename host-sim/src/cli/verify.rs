@@ -21,7 +21,7 @@ use std::path::PathBuf;
 #[derive(clap::Args)]
 #[command(after_help = EXAMPLES)]
 pub(crate) struct Arguments {
-    /// .tri, .obj, .stl, .ply, .gltf, .glb and .toml files, names of built-in scenes, or `all` for every built-in scene.
+    /// .tri, .obj, .stl, .ply, .gltf, .glb, .3mf and .toml files, names of built-in scenes, or `all` for every built-in scene.
     #[arg(value_name = "SCENE", default_value = "teapot")]
     scenes: Vec<String>,
     /// Boards, separated by commas: pico, lm3s6965evb, mps2-an385, mps2-an386; or all.
