@@ -18,7 +18,10 @@ use crate::{
     threemf,
 };
 use anyhow::{Context, Result, bail};
-use std::{collections::BTreeSet, path::Path};
+use std::{
+    collections::{BTreeSet, HashMap},
+    path::Path,
+};
 
 /// A mesh from a file.
 #[derive(Clone, Debug)]
@@ -210,7 +213,9 @@ fn with_libraries(folder: &Folder, obj: Obj, colours: Colours) -> Result<Content
             }
         }
     }
-    let materials: Vec<_> = names.iter().map(|name| name.as_ref().and_then(|name| named(&known, name)).cloned()).collect();
+    let numbers = Names::of(&known);
+    let material = |name: &Option<String>| known.get(numbers.find(name.as_ref()?)?).cloned();
+    let materials: Vec<_> = names.iter().map(material).collect();
     let unknown: Vec<_> =
         names.iter().zip(&materials).filter(|(_, known)| known.is_none()).filter_map(|(name, _)| name.as_deref()).collect();
     if !unknown.is_empty() {
@@ -249,11 +254,29 @@ fn files_of(library: &str, folder: &Folder) -> Vec<String> {
     if several.iter().any(is_one) { several } else { vec![bare(library)] }
 }
 
-/// The material of this name, or of a name that differs by a comment, or else by capitals.
-fn named<'a>(materials: &'a [mtl::Material], name: &str) -> Option<&'a mtl::Material> {
-    let by = |same: &dyn Fn(&str) -> bool| materials.iter().find(|material| same(&material.name));
-    let short = |name: &str| name.split(" #").next().unwrap_or_default().trim_end().to_owned();
-    by(&|known| known == name)
-        .or_else(|| by(&|known| known == short(name) || short(known) == name))
-        .or_else(|| by(&|known| known.to_lowercase() == name.to_lowercase()))
+/// The number of each material by its name, by its name up to a comment, and by its name in small letters. The first material of a name counts.
+struct Names {
+    exact: HashMap<String, usize>,
+    short: HashMap<String, usize>,
+    small: HashMap<String, usize>,
+}
+
+/// A name up to what may be a comment.
+fn short(name: &str) -> &str {
+    name.split(" #").next().unwrap_or_default().trim_end()
+}
+
+impl Names {
+    fn of(materials: &[mtl::Material]) -> Self {
+        let by =
+            |key: fn(&str) -> String| materials.iter().enumerate().rev().map(|(number, material)| (key(&material.name), number)).collect();
+        Self { exact: by(str::to_owned), short: by(|name| short(name).to_owned()), small: by(str::to_lowercase) }
+    }
+
+    /// The material of this name, or of a name that differs by a comment, or else by capitals.
+    fn find(&self, name: &str) -> Option<usize> {
+        let Self { exact, short: by_short, small } = self;
+        let by_comment = || exact.get(short(name)).into_iter().chain(by_short.get(name)).min();
+        exact.get(name).or_else(by_comment).or_else(|| small.get(&name.to_lowercase())).copied()
+    }
 }

@@ -92,6 +92,8 @@ pub fn parse(text: &str) -> Result<Obj> {
     // Faces may name vertices that follow: indices are checked at the end, by line.
     let mut lines = Vec::new();
     let (mut name, mut smoothing) = (None, Smoothing::ByAngle);
+    // The number of each material by its name: a file may have as many materials as faces.
+    let mut known = HashMap::new();
     let mut naming = Naming::default();
     let (mut positions, mut normals) = (Vectors::default(), Vectors::default());
     // The first wrong element of any kind, and the first face of too few corners.
@@ -116,11 +118,14 @@ pub fn parse(text: &str) -> Result<Obj> {
                     obj.faults.add(FEW_CORNERS, || format!("line {number}"));
                     continue;
                 }
-                let known = obj.materials.iter().position(|material| *material == name);
-                let material = known.unwrap_or(obj.materials.len());
-                if known.is_none() {
-                    obj.materials.push(name.clone());
-                }
+                let material = match known.get(&name) {
+                    Some(&known) => known,
+                    None => {
+                        known.insert(name.clone(), obj.materials.len());
+                        obj.materials.push(name.clone());
+                        obj.materials.len() - 1
+                    }
+                };
                 naming.face();
                 soup.faces.push(Face { corners, submesh: Submesh { object: 0, material }, smoothing });
                 lines.push(number);
@@ -199,11 +204,11 @@ impl Obj {
         let mut names = without_comments(&named).into_iter();
         let names: Vec<_> = self.materials.iter().map(|name| name.as_ref().and_then(|_| names.next())).collect();
         let mut merged: Vec<Option<String>> = Vec::new();
+        let mut known = HashMap::new();
         let numbers: Vec<usize> = names
             .into_iter()
             .map(|name| {
-                let known = merged.iter().position(|other| *other == name);
-                known.unwrap_or_else(|| {
+                *known.entry(name.clone()).or_insert_with(|| {
                     merged.push(name);
                     merged.len() - 1
                 })

@@ -1,5 +1,7 @@
 //! Lines and names of text files, as many programs write them.
 
+use std::collections::HashMap;
+
 /// The text of a file: UTF-8, and where a line is not, each byte a character of its own. So names in another encoding stay different from one another,
 /// and the same name is the same text in every file.
 pub(crate) fn decoded(bytes: &[u8]) -> String {
@@ -65,9 +67,18 @@ pub(crate) fn without_comment(name: &str) -> &str {
 
 /// Names without comments. If names would become equal that differ behind `#`, this was no comment, and they keep it.
 pub(crate) fn without_comments(names: &[&str]) -> Vec<String> {
+    // Of the names that become one, one that has a comment, and whether there are others.
+    let mut commented: HashMap<&str, (&str, bool)> = HashMap::new();
+    for &name in names {
+        let short = without_comment(name);
+        if short != name {
+            let (first, has_others) = commented.entry(short).or_insert((name, false));
+            *has_others |= *first != name;
+        }
+    }
     let keeps = |name: &str| {
         let short = without_comment(name);
-        short.is_empty() || short != name && names.iter().any(|&other| other != name && other != short && without_comment(other) == short)
+        short.is_empty() || short != name && commented.get(short).is_some_and(|&(_, has_others)| has_others)
     };
     names.iter().map(|&name| if keeps(name) { name } else { without_comment(name) }.to_owned()).collect()
 }
