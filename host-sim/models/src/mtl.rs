@@ -47,7 +47,12 @@ pub(crate) const SHARPEST: f64 = 1024.0;
 impl Material {
     /// A white material without a highlight.
     pub(crate) fn white() -> Self {
-        Self { name: "white".to_owned(), diffuse: Some([1.0; 3]), specular: Some([0.0; 3]), ..Self::default() }
+        Self::matt("white".to_owned(), [1.0; 3])
+    }
+
+    /// A material of one colour without a highlight.
+    pub(crate) fn matt(name: String, colour: V3) -> Self {
+        Self { name, diffuse: Some(colour), specular: Some([0.0; 3]), ..Self::default() }
     }
 
     /// The material of a surface whose colour is multiplied by those of a texture or of vertices.
