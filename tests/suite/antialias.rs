@@ -181,7 +181,7 @@ fn marks_without_room_change_no_pixel() {
             .flat_map(|(k, corners)| corners.map(|c| if k % 2 == 0 { mesh.normals[c] } else { [0.0, 1.0, 0.0] }))
             .collect(),
         triangles: (0..mesh.triangles.len()).map(|k| [3 * k, 3 * k + 1, 3 * k + 2]).collect(),
-        submeshes: Vec::new(),
+        ..Mesh::default()
     };
     let (parts, _) = quantise(&flat);
     let stream = Look::new(Options::default().surface, View::orbit(Up::Y, 0.5, 0.35, 3.0, 120)).stream(&parts).unwrap();

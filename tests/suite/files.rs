@@ -351,7 +351,8 @@ fn faces_have_the_colours_of_textures_and_vertices() {
     let said = place.converts(&["a.obj"]);
     assert!(said.contains("12 triangles have 3 colours of textures and vertices at the corners: none is farther than 12 of 255"), "{said}");
     assert!(said.contains("mesh 0: material 0 \"paint\", 12 triangles with 3 colours, 12 of them of one colour"), "{said}");
-    assert_eq!((place.palette(), place.colours()), (patches.to_vec(), vec![[1.0; 3]]));
+    // Equally frequent colours come in the order of their channels.
+    assert_eq!((place.palette(), place.colours()), ([patches[2], patches[1], patches[0]].to_vec(), vec![[1.0; 3]]));
     let colours = &place.counts("a.obj")["colours"];
     assert_eq!(["colours", "palettes", "triangles", "of_one_colour", "split", "far"].map(|field| &colours[field]), [3, 1, 12, 12, 0, 0]);
     let inspected = String::from_utf8(place.run(&["inspect", "out.tri"]).stdout).expect("text");

@@ -8,7 +8,7 @@ use crate::{
     distance::{Corners, hausdorff},
     mesh::{Mesh, Rgb},
     number::above,
-    palette::distance,
+    paint::distance,
     quantise::{self, Part},
     records,
 };

@@ -97,13 +97,19 @@ impl Image {
     }
 }
 
-impl Texture {
-    /// The colour at coordinates of the surface, of the nearest pixel. The image repeats itself.
-    pub(crate) fn at(&self, [u, v]: [f64; 2]) -> V3 {
-        let Self { image, transform } = self;
-        let [u, v] = transform.map(|[a, b, c]| a * u + b * v + c);
-        let height = image.pixels.len() / image.width;
+impl Image {
+    /// The colour of the pixel at a place, of which 1 is the whole width and height. The image repeats itself.
+    pub(crate) fn at(&self, [x, y]: [f64; 2]) -> V3 {
+        let height = self.pixels.len() / self.width;
         let place = |coordinate: f64, size: usize| (((coordinate - coordinate.floor()) * size as f64) as usize).min(size - 1);
-        image.pixels[place(v, height) * image.width + place(u, image.width)].map(|c| f64::from(c) / 255.0)
+        let [r, g, b] = self.pixels[place(y, height) * self.width + place(x, self.width)];
+        [f64::from(r) / 255.0, f64::from(g) / 255.0, f64::from(b) / 255.0]
+    }
+}
+
+impl Texture {
+    /// The place on the image at coordinates of the surface.
+    pub(crate) fn place(&self, [u, v]: [f64; 2]) -> [f64; 2] {
+        self.transform.map(|[a, b, c]| a * u + b * v + c)
     }
 }

@@ -15,36 +15,36 @@ use std::collections::HashMap;
 const LEAST: f64 = 8.0 / (1 << UNIT) as f64;
 
 /// Shares of the corners of a triangle at each corner of a part.
-pub(crate) type Part = [[f64; 3]; 3];
+pub(super) type Part = [[f64; 3]; 3];
 
 const CORNERS: [[f64; 3]; 3] = [[1.0, 0.0, 0.0], [0.0, 1.0, 0.0], [0.0, 0.0, 1.0]];
 /// The middle of the edge from each corner to the next one.
 const MIDDLES: [[f64; 3]; 3] = [[0.5, 0.5, 0.0], [0.0, 0.5, 0.5], [0.5, 0.0, 0.5]];
 
 /// A triangle after splitting.
-pub(crate) struct Piece {
+pub(super) struct Piece {
     /// Number of the triangle that it is, or is a part of.
-    pub(crate) of: usize,
+    pub(super) of: usize,
     /// The part that it is; `None` for the whole triangle.
-    pub(crate) part: Option<Part>,
+    pub(super) part: Option<Part>,
 }
 
 /// The ends of an edge, as numbers of places, the smaller one first.
 type Edge = [usize; 2];
 
 /// A mesh of which triangles are split.
-pub(crate) struct Split {
+pub(super) struct Split {
     /// The mesh, whose first vertices are those of the mesh before.
-    pub(crate) mesh: Mesh,
+    pub(super) mesh: Mesh,
     /// What each of its triangles was before.
-    pub(crate) pieces: Vec<Piece>,
+    pub(super) pieces: Vec<Piece>,
     /// Number of triangles that are split into quarters.
-    pub(crate) count: usize,
+    pub(super) count: usize,
 }
 
 /// A copy of a mesh in which these triangles are split at the middles of their edges, if they and their neighbours are large enough, and these neighbours
 /// with them. The copy has no colours.
-pub(crate) fn at_middles(mesh: &Mesh, wanted: &[bool]) -> Split {
+pub(super) fn at_middles(mesh: &Mesh, wanted: &[bool]) -> Split {
     let places = mesh.places();
     let edges = |triangle: &[usize; 3]| [0, 1, 2].map(|k| edge(places[triangle[k]], places[triangle[(k + 1) % 3]]));
     let wanted = || mesh.triangles.iter().zip(wanted).filter(|(_, wanted)| **wanted).map(|(triangle, _)| triangle);
@@ -121,7 +121,7 @@ const QUARTERS: [[Corner; 3]; 4] = {
 };
 
 /// The parts of a triangle whose edges are all split, as shares of its corners.
-pub(crate) fn quarters() -> [Part; 4] {
+pub(super) fn quarters() -> [Part; 4] {
     QUARTERS.map(|part| part.map(|corner| corner.pick(&CORNERS, &MIDDLES)))
 }
 

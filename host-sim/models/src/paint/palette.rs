@@ -16,7 +16,7 @@ const BLOCKS: usize = 256;
 /// Colours that differ by no more than this are one colour.
 const SAME: u8 = 2;
 /// A colour that differs by more than this from the one that stands for it is far.
-const FAR: u8 = 6;
+const FAR: u8 = 12;
 /// The share of corners whose colours may be far from those of one palette.
 const FEW: f64 = 0.01;
 /// How often the triangles of a material are divided into two meshes with palettes of their own.
@@ -25,28 +25,28 @@ const DIVISIONS: usize = 3;
 const ROUNDS: usize = 4;
 
 /// Colours at the corners of triangles.
-pub(crate) struct Colours<'a> {
+pub(super) struct Colours<'a> {
     /// The colours of each triangle, if it has some.
-    pub(crate) triangles: &'a [Option<[Rgb; 3]>],
+    pub(super) triangles: &'a [Option<[Rgb; 3]>],
     /// Triangles whose colours stay as they are, if one palette has room for them.
-    pub(crate) is_exact: &'a [bool],
+    pub(super) is_exact: &'a [bool],
     /// The number of each triangle's material.
-    pub(crate) material: &'a dyn Fn(usize) -> usize,
+    pub(super) material: &'a dyn Fn(usize) -> usize,
 }
 
 /// Palettes of a mesh.
-pub(crate) struct Reduced {
+pub(super) struct Reduced {
     /// The palettes, each of at most 256 colours.
-    pub(crate) palettes: Vec<Vec<Rgb>>,
+    pub(super) palettes: Vec<Vec<Rgb>>,
     /// For each triangle its colours in one of them.
-    pub(crate) triangles: Vec<Option<Coloured>>,
+    pub(super) triangles: Vec<Option<Coloured>>,
     /// Whether all colours are nearly equal to those that they stand for.
-    pub(crate) is_close: bool,
+    pub(super) is_close: bool,
 }
 
 impl Colours<'_> {
     /// Palettes that have these colours, or colours near to them.
-    pub(crate) fn reduced(&self) -> Reduced {
+    pub(super) fn reduced(&self) -> Reduced {
         let coloured: Vec<usize> = (0..self.triangles.len()).filter(|&triangle| self.triangles[triangle].is_some()).collect();
         let counts = self.counts(&coloured);
         let groups = match Palette::of_few(&counts) {
@@ -182,6 +182,8 @@ impl Palette {
             }
         }
         let mut colours: Vec<[f64; 3]> = ranges.iter().map(|(_, inside)| inside.mean()).collect();
+        let sort = |colours: &mut Vec<[f64; 3]>| colours.sort_by(|one, other| one[1].total_cmp(&other[1]));
+        sort(&mut colours);
         for _ in 0..ROUNDS {
             let mut sums = vec![Cluster::default(); colours.len()];
             for &(point, weight) in &points {
@@ -191,6 +193,7 @@ impl Palette {
             for (colour, sum) in colours.iter_mut().zip(&sums).filter(|(_, sum)| sum.weight > 0.0) {
                 *colour = sum.mean();
             }
+            sort(&mut colours);
         }
         let index = counts.iter().map(|count| (count.colour, nearest_of(&colours, count.colour.map(f64::from)) as u8)).collect();
         Self { colours: colours.iter().map(|colour| colour.map(|c| c.round() as u8)).collect(), index, is_close: false }
@@ -251,16 +254,26 @@ impl Cluster {
     }
 }
 
+/// The number of the nearest of these colours, which are sorted by green. The search begins at the same green, and ends where the difference of green
+/// alone is too large.
 fn nearest_of(colours: &[[f64; 3]], point: [f64; 3]) -> usize {
-    let square = |colour: &[f64; 3]| (0..3).map(|k| (colour[k] - point[k]) * (colour[k] - point[k])).sum::<f64>();
-    let mut best = (f64::INFINITY, 0);
-    for (number, colour) in colours.iter().enumerate() {
-        let square = square(colour);
+    let mut high = colours.partition_point(|colour| colour[1] < point[1]);
+    let (mut low, mut best) = (high, (f64::INFINITY, 0));
+    let green =
+        |number: Option<usize>| number.and_then(|number| colours.get(number)).map_or(f64::INFINITY, |colour| (colour[1] - point[1]).abs());
+    loop {
+        let [below, above] = [green(low.checked_sub(1)), green(Some(high))];
+        if below.min(above) * below.min(above) >= best.0 {
+            return best.1;
+        }
+        let number = if below < above { low - 1 } else { high };
+        (low, high) = if below < above { (number, high) } else { (low, number + 1) };
+        let [r, g, b] = colours[number];
+        let square = (r - point[0]) * (r - point[0]) + (g - point[1]) * (g - point[1]) + (b - point[2]) * (b - point[2]);
         if square < best.0 {
             best = (square, number);
         }
     }
-    best.1
 }
 
 /// The nearest of these colours, and its distance.
