@@ -94,7 +94,7 @@ pub fn succeeds(directory: &Path, arguments: &[&str]) -> String {
 #[must_use]
 pub fn unmarked(stream: &StreamBytes) -> StreamBytes {
     let mut bytes = stream.as_bytes().to_vec();
-    bytes[size_of::<Header>() + offset_of!(Mesh, flags)] &= !CLOSED_CONVEX as u8;
+    bytes[size_of::<Header>() + offset_of!(Mesh, flags)] &= !CLOSED_CONVEX;
     seal(&mut bytes);
     StreamBytes::from(bytes.as_slice())
 }

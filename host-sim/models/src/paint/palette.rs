@@ -227,9 +227,9 @@ impl Cluster {
 
     fn add(&mut self, point: [f64; 3], weight: f64) {
         self.weight += weight;
-        for k in 0..3 {
-            self.sum[k] += weight * point[k];
-            self.squares[k] += weight * point[k] * point[k];
+        for ((sum, square), c) in self.sum.iter_mut().zip(&mut self.squares).zip(point) {
+            *sum += weight * c;
+            *square += weight * c * c;
         }
     }
 
