@@ -68,13 +68,21 @@ impl std::error::Error for Missing {}
 pub(crate) struct Folder {
     folder: PathBuf,
     allow_outside: bool,
+    /// Files by their names, in place of a folder.
+    in_memory: Option<Vec<(String, Vec<u8>)>>,
 }
 
 impl Folder {
     /// The folder of a model; with `allow_outside`, files elsewhere are read, too.
     pub(crate) fn of(model: &Path, allow_outside: bool) -> Self {
         let folder = model.parent().filter(|folder| !folder.as_os_str().is_empty()).unwrap_or_else(|| Path::new("."));
-        Self { folder: folder.to_owned(), allow_outside }
+        Self { folder: folder.to_owned(), allow_outside, in_memory: None }
+    }
+
+    /// Files in memory with these names. No other files are read.
+    pub(crate) fn in_memory(files: &[(&str, &[u8])]) -> Self {
+        let files = files.iter().map(|&(name, bytes)| (name.to_owned(), bytes.to_vec())).collect();
+        Self { folder: PathBuf::from("."), allow_outside: false, in_memory: Some(files) }
     }
 
     /// Reads a file by its name in the model, as Windows and others write it.
@@ -83,6 +91,10 @@ impl Folder {
     /// When there is no such file, or it lies outside the folder, is no regular file, or is too large.
     pub(crate) fn read(&self, name: &str) -> Result<(PathBuf, Vec<u8>)> {
         let path = self.find(name)?;
+        if let Some(files) = &self.in_memory {
+            let file = files.iter().find(|(name, _)| Path::new(name) == path);
+            return file.map(|(_, bytes)| (path.clone(), bytes.clone())).ok_or_else(|| Missing(path).into());
+        }
         ensure!(fs::metadata(&path).is_ok_and(|file| file.is_file()), "{} is no regular file; export the model again", path.display());
         let bytes = read(&path)?;
         Ok((path, bytes))
@@ -93,6 +105,10 @@ impl Folder {
     /// # Errors
     /// [`Missing`] when there is no such file, and another error when it lies outside the folder.
     pub(crate) fn find(&self, name: &str) -> Result<PathBuf> {
+        if let Some(files) = &self.in_memory {
+            let path = PathBuf::from(name);
+            return if files.iter().any(|(known, _)| known == name) { Ok(path) } else { Err(Missing(path).into()) };
+        }
         let slashes = name.replace('\\', "/");
         let given = Path::new(&slashes);
         let is_inside = given.components().all(|part| matches!(part, Component::Normal(_) | Component::CurDir)) && !has_drive(&slashes);
@@ -231,6 +247,15 @@ mod tests {
             }
             assert_eq!(open.read("link.bin").unwrap().1, b"secret");
             assert_eq!(closed.read("within.bin").unwrap().1, b"real");
+        }
+    }
+
+    #[test]
+    fn files_in_memory_have_no_folder() {
+        let folder = Folder::in_memory(&[("a.mtl", b"one")]);
+        assert_eq!(folder.read("a.mtl").unwrap().1, b"one");
+        for name in ["A.MTL", "./a.mtl", "Cargo.toml", "/dev/zero", ""] {
+            assert!(said(folder.read(name)).ends_with("put it beside the mesh"), "{name}");
         }
     }
 

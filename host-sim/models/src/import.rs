@@ -110,10 +110,21 @@ pub fn file(path: &Path, weld: Weld) -> Result<Imported> {
 /// # Errors
 /// Names the file and the place in it.
 pub fn file_by(path: &Path, weld: Weld, rules: Rules) -> Result<Imported> {
+    welded(path, &files::read(path)?, &Folder::of(path, rules.allow_outside), weld, rules)
+}
+
+/// Reads and welds a file that is in memory, as [`file_by()`] does. The files that it names are taken from `beside`, by their names, and from nowhere else.
+///
+/// # Errors
+/// Names the file and the place in it.
+pub fn bytes_by(path: &Path, bytes: &[u8], beside: &[(&str, &[u8])], weld: Weld, rules: Rules) -> Result<Imported> {
+    welded(path, bytes, &Folder::in_memory(beside), weld, rules)
+}
+
+fn welded(path: &Path, bytes: &[u8], folder: &Folder, weld: Weld, rules: Rules) -> Result<Imported> {
     let place = || path.display().to_string();
-    let folder = Folder::of(path, rules.allow_outside);
     let Contents { soup, objects, mut materials, textures, mut ignored, mut faults, mut remarks } =
-        contents(path, &files::read(path)?, &folder, rules.colours)?;
+        contents(path, bytes, folder, rules.colours)?;
     let (mut mesh, sources, report) = mesh::weld_with_sources(&soup, weld).with_context(place)?;
     let painted = match rules.colours {
         Colours::Corners => paint::paint(&mut mesh, sources, &soup, &mut materials, &textures),

@@ -1,5 +1,8 @@
 //! Writes seeds for the fuzz targets: `cargo run -p microphong-stress --example seeds -- fuzz/corpus`.
 
+#[path = "seeds/models.rs"]
+mod models;
+
 use anyhow::{Context, Result};
 use microphong_stress::{
     changes, fuzz,
@@ -30,6 +33,9 @@ fn main() -> Result<()> {
     let folder = PathBuf::from(std::env::args().nth(1).context("name the folder of the corpus")?);
     for (target, _) in fuzz::TARGETS {
         fs::create_dir_all(folder.join(target))?;
+    }
+    for (k, (target, bytes)) in models::seeds().into_iter().enumerate() {
+        fs::write(folder.join(format!("{target}/seed-{k:02}")), bytes)?;
     }
     let mut number = 0;
     let mut case = || loop {

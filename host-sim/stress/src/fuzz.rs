@@ -2,7 +2,7 @@
 //!
 //! For no bytes may anything panic, or a sum or product overflow.
 
-use crate::{case::Case, texts};
+use crate::{case::Case, readers, texts};
 use microphong::{
     Outlines, Skips, Stream,
     stream::{
@@ -21,7 +21,19 @@ use zerocopy::FromBytes;
 pub type Target = fn(&[u8]);
 
 /// The targets, by name.
-pub const TARGETS: [(&str, Target); 4] = [("raw", raw), ("structured", structured), ("obj", obj), ("scene", scene)];
+pub const TARGETS: [(&str, Target); 11] = [
+    ("raw", raw),
+    ("structured", structured),
+    ("obj", obj),
+    ("scene", scene),
+    ("stl", readers::stl),
+    ("ply", readers::ply),
+    ("mtl", readers::mtl),
+    ("image", readers::image),
+    ("gltf", readers::gltf),
+    ("threemf", readers::threemf),
+    ("archive", readers::archive),
+];
 
 /// Number of the first bytes, which decide how a frame is drawn.
 const CHOICES: usize = 8;

@@ -15,6 +15,7 @@ pub mod drift;
 pub mod fuzz;
 pub mod hostile;
 pub mod random;
+pub mod readers;
 mod records;
 pub mod sameness;
 pub mod scenes;
