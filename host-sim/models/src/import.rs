@@ -161,7 +161,7 @@ fn contents(path: &Path, bytes: &[u8], folder: &Folder, colours: Colours) -> Res
     let plain = Contents { materials: vec![None], ..Contents::default() };
     // Of archives, which are refused otherwise, only these are read.
     if threemf::is_3mf(bytes, ends("3mf")) {
-        return of_3mf(bytes).with_context(place);
+        return of_3mf(bytes, colours).with_context(place);
     }
     foreign::refuse(path, bytes)?;
     foreign::refuse_stream(path, bytes)?;
@@ -175,7 +175,7 @@ fn contents(path: &Path, bytes: &[u8], folder: &Folder, colours: Colours) -> Res
         return Ok(Contents { soup, objects, materials, textures, ignored, faults, remarks });
     }
     if ends("3mf") {
-        return of_3mf(bytes).with_context(place);
+        return of_3mf(bytes, colours).with_context(place);
     }
     foreign::refuse_ending(path)?;
     if stl::is_stl(bytes, ends("stl")) {
@@ -190,8 +190,8 @@ fn contents(path: &Path, bytes: &[u8], folder: &Folder, colours: Colours) -> Res
     with_libraries(folder, obj, colours).with_context(place)
 }
 
-fn of_3mf(bytes: &[u8]) -> Result<Contents> {
-    let threemf::Scene { soup, objects, materials, textures, ignored, faults, remarks } = threemf::parse(bytes)?;
+fn of_3mf(bytes: &[u8], colours: Colours) -> Result<Contents> {
+    let threemf::Scene { soup, objects, materials, textures, ignored, faults, remarks } = threemf::parse(bytes, colours)?;
     Ok(Contents { soup, objects, materials, textures, ignored, faults, remarks })
 }
 

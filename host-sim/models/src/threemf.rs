@@ -10,6 +10,7 @@ mod xml;
 use crate::{
     faults::{self, Faults},
     fields::quoted,
+    import::Colours,
     mesh::{Corner, Face, Smoothing, Soup, Submesh},
     mtl::Material,
     number::grouped,
@@ -61,16 +62,16 @@ pub(crate) fn is_3mf(bytes: &[u8], named: bool) -> bool {
     archive::is_archive(bytes) && (named || archive::has_model(bytes))
 }
 
-/// Reads what a file says is to be built.
+/// Reads what a file says is to be built. Images are read only if their colours are wanted.
 ///
 /// # Errors
 /// The error names the part of the archive, the line or the object, and its fault.
-pub fn parse(bytes: &[u8]) -> Result<Scene> {
-    of_archive(Archive::open(bytes).context("3MF")?).context("3MF")
+pub fn parse(bytes: &[u8], colours: Colours) -> Result<Scene> {
+    of_archive(Archive::open(bytes).context("3MF")?, colours).context("3MF")
 }
 
 /// Reads the main model and all models that it needs, then places their objects.
-fn of_archive(mut archive: Archive<'_>) -> Result<Scene> {
+fn of_archive(mut archive: Archive<'_>, colours: Colours) -> Result<Scene> {
     let mut names = vec![archive.main_model()?];
     let mut models: Vec<Model> = Vec::new();
     let mut numbers = HashMap::from([(archive::key(&names[0]), 0)]);
@@ -97,6 +98,7 @@ fn of_archive(mut archive: Archive<'_>) -> Result<Scene> {
         numbers: &numbers,
         archive,
         images: Images::default(),
+        colours,
         known: HashMap::new(),
         firsts: HashMap::new(),
         scene: Scene::default(),
@@ -137,6 +139,8 @@ struct Builder<'a> {
     numbers: &'a HashMap<String, usize>,
     archive: Archive<'a>,
     images: Images,
+    /// What becomes of colours.
+    colours: Colours,
     /// Materials of the scene.
     known: HashMap<Look, usize>,
     /// Where the colours or places of a property group begin in those of the scene.
@@ -305,6 +309,10 @@ impl<'a> Builder<'a> {
     /// A texture of a model, or nothing if it cannot be read, which is said.
     fn texture(&mut self, model: usize, texture: u32) -> Option<Texture> {
         let Self { models, images, archive, scene, .. } = self;
+        if self.colours == Colours::None {
+            scene.ignored.insert("textures");
+            return None;
+        }
         let Some(path) = models[model].textures.get(&texture) else {
             scene.remarks.push(format!("the texture {texture} is left out: the file does not have it"));
             return None;

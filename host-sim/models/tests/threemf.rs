@@ -1,7 +1,7 @@
 //! 3MF: objects stand where components and items put them, with their colours; what is wrong is an error with a place and a remedy.
 
 use microphong_models::{
-    import::{self, Imported, Rules},
+    import::{self, Colours, Imported, Rules},
     mesh::Weld,
     threemf::{self, Scene},
 };
@@ -70,12 +70,12 @@ fn object(attributes: &str, paints: [&str; 4]) -> String {
 
 #[track_caller]
 fn parsed(bytes: &[u8]) -> Scene {
-    threemf::parse(bytes).unwrap()
+    threemf::parse(bytes, Colours::Corners).unwrap()
 }
 
 #[track_caller]
 fn refused(bytes: &[u8]) -> String {
-    format!("{:#}", threemf::parse(bytes).unwrap_err())
+    format!("{:#}", threemf::parse(bytes, Colours::Corners).unwrap_err())
 }
 
 /// The corners of each face, where they stand.
@@ -176,7 +176,7 @@ fn triangles_have_base_materials() {
     );
 }
 
-/// Corners have colours of their own, of which a face has the mean.
+/// Corners have colours of their own. A face without colours has the material of the command line.
 #[test]
 fn triangles_have_colours_of_groups() {
     let colours =
@@ -192,10 +192,11 @@ fn triangles_have_colours_of_groups() {
     let place = tempfile::tempdir().unwrap();
     let file = place.path().join("a.3mf");
     fs::write(&file, bytes).unwrap();
-    let Imported { materials, remarks, .. } = import::file(&file, Weld::default()).unwrap();
+    let Imported { mesh, materials, remarks, painted, .. } = import::file(&file, Weld::default()).unwrap();
     let names: Vec<_> = materials.iter().map(|material| material.as_ref().map(|material| &material.name[..])).collect();
-    assert!(names.contains(&Some("#ff0000")) && names.contains(&Some("#0000ff")) && names.contains(&Some("#555555")), "{names:?}");
-    assert!(remarks.iter().any(|remark| remark.starts_with("3 materials are made")), "{remarks:?}");
+    assert_eq!((names, painted.triangles, painted.of_one_colour), (vec![None, Some("white")], 3, 2));
+    assert_eq!(mesh.palettes, [[[0, 0, 255], [255, 0, 0], [0, 255, 0]]]);
+    assert!(remarks.iter().any(|remark| remark.starts_with("3 triangles have 3 colours")), "{remarks:?}");
     let error = import::file_by(&file, Weld::default(), Rules { strict: true, ..Rules::default() }).unwrap_err();
     assert!(format!("{error:#}").contains("triangle 4; --strict refuses it"), "{error:#}");
 }
@@ -213,12 +214,14 @@ fn triangles_have_textures() {
     let place = tempfile::tempdir().unwrap();
     let file = place.path().join("a");
     fs::write(&file, packed(&[("3D/3dmodel.model", text.as_bytes()), ("3D/Textures/a.png", &image)])).unwrap();
-    let Imported { materials, .. } = import::file(&file, Weld::default()).unwrap();
+    let Imported { mesh, materials, .. } = import::file(&file, Weld::default()).unwrap();
     let names: Vec<_> = materials.iter().flatten().map(|material| &material.name[..]).collect();
     // The lower row is blue, and most faces are there.
-    assert_eq!(names, ["#0000ff", "#ff0000"]);
+    assert_eq!((names, &mesh.palettes[..]), (vec!["white"], &[vec![[0, 0, 255], [255, 0, 0]]][..]));
     fs::write(&file, packed(&[("3D/3dmodel.model", text.as_bytes())])).unwrap();
     let Imported { remarks, .. } = import::file(&file, Weld::default()).unwrap();
+    let without = Rules { colours: Colours::None, ..Rules::default() };
+    assert_eq!(import::file_by(&file, Weld::default(), without).unwrap().remarks, ["left out: texture coordinates, textures"]);
     let said = "the texture /3D/Textures/a.png is left out: the part /3D/Textures/a.png is missing in the archive; export the model again";
     assert!(remarks.iter().any(|remark| remark == said), "{remarks:?}");
 }
@@ -374,13 +377,13 @@ proptest! {
             let place = index.index(damaged.len());
             damaged[place] = *byte;
         }
-        let _ = threemf::parse(&packed(&[("3D/3dmodel.model", &damaged)]));
+        let _ = threemf::parse(&packed(&[("3D/3dmodel.model", &damaged)]), Colours::Corners);
         let mut whole = packed_by(&[("3D/3dmodel.model", text.as_bytes())], How { method: CompressionMethod::STORE, ..DEFLATED });
-        let _ = threemf::parse(&whole[..cut.index(whole.len())]);
+        let _ = threemf::parse(&whole[..cut.index(whole.len())], Colours::Corners);
         for (index, byte) in bytes {
             let place = index.index(whole.len());
             whole[place] = byte;
         }
-        let _ = threemf::parse(&whole);
+        let _ = threemf::parse(&whole, Colours::Corners);
     }
 }
