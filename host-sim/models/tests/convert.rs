@@ -386,13 +386,13 @@ fn materials_become_meshes() {
 fn very_many_names_take_no_long_time() {
     let place = tempfile::tempdir().unwrap();
     let path = place.path().join("a.obj");
-    let count = 30_000;
+    let count = 150_000;
     let faces: String = (0..count).map(|k| format!("usemtl m # {k}\nf 1 2 3\n")).collect();
     let materials: String = (0..count).map(|k| format!("newmtl m # {k}\nKd 1 0 0\n")).collect();
     fs::write(&path, format!("mtllib a.mtl\nv 0 0 0\nv 1 0 0\nv 0 1 0\n{faces}")).unwrap();
     fs::write(place.path().join("a.mtl"), materials).unwrap();
     let start = std::time::Instant::now();
     assert_eq!(import::file(&path, Weld::default()).unwrap().materials.iter().flatten().count(), count);
-    // It takes less than a second, and took minutes.
+    // It takes about a second. Comparing each with each takes more than a minute.
     assert!(start.elapsed().as_secs() < 20, "{:?}", start.elapsed());
 }
