@@ -143,7 +143,7 @@ fn components_stand_where_transforms_put_them() {
     assert_eq!(parsed(&of_model(&model(&(inner + outer), build))).objects, ["whole", "whole", ""]);
 }
 
-/// As slicers write it: components in other parts of the archive, each of which counts its objects anew.
+/// A file as slicers write it: components in other parts of the archive, each of which counts its objects anew.
 #[test]
 fn components_may_be_in_other_parts() {
     let inner = model(&object(r#"id="1""#, [""; 4]), "");

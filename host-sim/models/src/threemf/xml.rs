@@ -10,7 +10,7 @@ use std::borrow::Cow;
 /// The value of an attribute.
 pub(super) struct Attribute<'a> {
     name: &'static str,
-    /// As it is written.
+    /// The name as it is written.
     value: Cow<'a, str>,
 }
 
