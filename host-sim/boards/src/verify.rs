@@ -231,7 +231,8 @@ fn draw_in<C: Pixel, F: FromDrawn<C>>(
     // The core has all features here.
     let has = |feature| match feature {
         Feature::Text => board.has_text(),
-        Feature::Antialias | Feature::LightShapes | Feature::VertexColours => antialias,
+        Feature::Antialias | Feature::LightShapes => antialias,
+        Feature::VertexColours => false,
         _ => true,
     };
     if let Some(feature) = Feature::missing(&stream, &Channels::of::<C>(), has) {
