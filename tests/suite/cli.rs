@@ -352,10 +352,15 @@ fn other_formats_are_named() {
             place.fails(&["render", file], 1, &[file, format, &remedy]);
         }
     }
-    for (file, format) in [("a.dae", "COLLADA")] {
+    for (file, format, remedies) in [
+        ("a.dae", "COLLADA", ["assimp export a.dae a.obj", "Blender"]),
+        // 3MF is read, and a wrong file is told what it should be.
+        ("a.3mf", "3MF", ["zip archive", "export it again"]),
+    ] {
+        let [of_convert, of_compare] = remedies;
         place.file(file, "of this we know the ending alone");
-        place.fails(&["convert", file], 1, &[file, format, &format!("assimp export {file} a.obj")]);
-        place.fails(&["compare", file], 1, &[file, format, "Blender"]);
+        place.fails(&["convert", file], 1, &[file, format, of_convert]);
+        place.fails(&["compare", file], 1, &[file, format, of_compare]);
     }
     place.file("a.txt", TETRAHEDRON).fails(&["render", "a.txt"], 2, &["unknown scene", "a.txt", ".obj"]);
     place.fails(&["render", "none.3ds"], 2, &["none.3ds", ".obj"]);

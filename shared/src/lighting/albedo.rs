@@ -3,7 +3,8 @@
 //! The level of a node is its colour times what the material reflects of ambient and diffuse light, plus its highlights. So methods that interpolate
 //! levels need nothing else. Methods that compute light at each pixel interpolate the colour linearly beside it.
 //!
-//! Error: levels are rounded to the nearest; white changes none.
+//! Error: levels are rounded to the nearest, and white changes none. At a vertex under more than 512 of 255 they are rounded to as many bits as the
+//! largest of them has more than 16.
 
 use crate::{
     arch::product::unsigned_product,

@@ -444,8 +444,15 @@ impl Reflectance {
     #[inline]
     pub(crate) fn reflected_parts(&self, cosine: i32, highlight: u32) -> Parts {
         let [gains, ..] = &self.gains;
-        let diffuse = zip(self.ambient, gains.diffuse, |ambient, diffuse| diffuse_level([ambient, diffuse.into()], cosine));
-        Parts { diffuse, specular: map(gains.specular, |specular| reflected((0, specular), 0, highlight)) }
+        let mut parts = self.unlit_parts();
+        parts.add(gains, cosine, highlight);
+        parts
+    }
+
+    /// The parts of ambient light alone.
+    #[inline(always)]
+    fn unlit_parts(&self) -> Parts {
+        Parts { diffuse: self.ambient, specular: [0; 3] }
     }
 
     /// The levels of the table of colours without highlight at six nodes with these cosines, under one light, not clamped, Q9.7. Domain:
@@ -681,7 +688,7 @@ impl<'f> LitMaterial<'f> {
     /// The parts of [`Self::levels`].
     #[inline]
     pub(crate) fn parts(self, incident: impl Iterator<Item = Incident>) -> Parts {
-        let mut parts = Parts { diffuse: self.ambient, specular: [0; 3] };
+        let mut parts = self.unlit_parts();
         for (gains, Incident { towards, half, strength }) in self.gains.iter().zip(incident) {
             let mut light = Reflection { diffuse: towards, highlight: self.highlight_at(half) };
             if LIGHT_SHAPES {
@@ -695,7 +702,7 @@ impl<'f> LitMaterial<'f> {
     /// The parts of [`Self::constant_levels`].
     #[inline(never)]
     pub(crate) fn constant_parts<N: UnitNormal>(self, sources: &[Source], normal: &N) -> Parts {
-        let mut parts = Parts { diffuse: self.ambient, specular: [0; 3] };
+        let mut parts = self.unlit_parts();
         for (gains, source) in self.gains.iter().zip(sources) {
             let Some(&[towards, half]) = source.directional() else { continue };
             let cosine = normal.cosine(towards);

@@ -50,7 +50,13 @@ impl VertexStage<'_> {
     /// Whether vertices hold [`Parts`](crate::lighting::albedo::Parts) in place of levels, because the corners of triangles have colours.
     #[inline(always)]
     pub(crate) fn holds_parts(&self) -> bool {
-        self.is_coloured() && !matches!(self.light, VertexLight::Cosines | VertexLight::CosinesAndReflection)
+        self.is_coloured() && self.has_levels()
+    }
+
+    /// Whether vertices hold levels, or nothing, unless there is one constant light.
+    #[inline(always)]
+    fn has_levels(&self) -> bool {
+        !matches!(self.light, VertexLight::Cosines | VertexLight::CosinesAndReflection)
     }
 
     /// The corners `[x, y]` on the screen, clockwise, which is against the order of the stream; `None` if one is not cached or needs
@@ -160,8 +166,7 @@ impl VertexStage<'_> {
     #[inline(never)]
     fn under_lights(&self, vertex: &Vertex) -> [i32; 4] {
         let (normal, reflectance, lighting) = (wide(vertex.normal), &self.reflectance, self.lighting);
-        let has_levels = !matches!(self.light, VertexLight::Cosines | VertexLight::CosinesAndReflection);
-        let holds_parts = self.holds_parts();
+        let (has_levels, holds_parts) = (self.has_levels(), self.holds_parts());
         match lighting.is_constant() {
             true if holds_parts => reflectance.constant_parts(lighting.sources(), &MeanNormal::at(normal)).packed(),
             true if has_levels => of_levels(reflectance.constant_levels(lighting.sources(), &MeanNormal::at(normal))),

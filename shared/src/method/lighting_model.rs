@@ -50,8 +50,9 @@ pub enum Lit<V, D> {
     Fully(V),
 }
 
-/// The colour of a surface over a triangle: red and green, then blue. Shares are walked in units of 2^-31.
+/// The colour of a surface over a triangle, as shares of its channels, Q2.30.
 struct Coloured<'a, W> {
+    /// Red and green, then blue and nothing.
     ways: [W; 2],
     /// Where the sums of all highlights begin.
     dark: [i32; 3],

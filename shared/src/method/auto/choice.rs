@@ -10,7 +10,7 @@ use crate::{
     },
     method::{
         CornerCosines, Shading, TriangleSetup,
-        auto::error_bound::{Curvature, Interval, LinearBound},
+        auto::error_bound::{Curvature, Interval, LinearBound, of_product},
         largest, largest_range,
     },
     raster::counts::Counts,
@@ -163,7 +163,7 @@ fn one_light(setup: &TriangleSetup<'_>, shading: &Shading<'_>, [towards, _]: &Co
     let mut diffuse = limits.diffuse_level(0, lit_range(towards));
     if let Some(albedos) = setup.albedos() {
         let range = Albedo::range(albedos);
-        interval = interval.widened(limits.of_product(range, diffuse));
+        interval = interval.widened(of_product(range, diffuse));
         if interval.half() > budget {
             return None;
         }

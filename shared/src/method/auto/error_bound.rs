@@ -246,6 +246,18 @@ fn terminator(curvature: Curvature, &[a, b, c]: &[i32; 3], most: u32) -> Option<
     (least < 0).then(|| [curvature.cosine(most), above_zero(0i32.wrapping_sub(least))])
 }
 
+/// A bound of the difference between the product of two values that are linear over the triangle and what is interpolated linearly between the products
+/// at the corners: a quarter of the product of their ranges. The colour of the surface, Q0.16, and the level of light, Q9.7, differ by these ranges
+/// between the corners.
+///
+/// Proof: at a point with the weights w of the corners the difference is the covariance of the two values at the corners, where these have the
+/// probabilities w. It is at most the root of the product of their variances (Cauchy and Schwarz), and a variance at most a quarter of the squared
+/// range (Popoviciu).
+#[inline]
+pub(crate) fn of_product(colour: u32, level: u32) -> u32 {
+    ((colour * level.min(1 << SHARE)) >> (SHARE + 2)) + 1
+}
+
 /// Bounds of linear interpolation between the corners.
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct LinearBound {
@@ -304,18 +316,6 @@ impl ErrorBounds {
             bounds.brightest += place.brightest(light.specular);
             bounds.has_highlight = true;
         }
-    }
-
-    /// A bound of the difference between the product of two values that are linear over the triangle and what is interpolated linearly between the
-    /// products at the corners: a quarter of the product of their ranges. The colour of the surface, Q0.16, and the level of light, Q9.7, differ by
-    /// these ranges between the corners.
-    ///
-    /// Proof: at a point with the weights w of the corners the difference is the covariance of the two values at the corners, where these have the
-    /// probabilities w. It is at most the root of the product of their variances (Cauchy and Schwarz), and a variance at most a quarter of the squared
-    /// range (Popoviciu).
-    #[inline]
-    pub(crate) fn of_product(&self, colour: u32, level: u32) -> u32 {
-        ((colour * level.min(1 << SHARE)) >> (SHARE + 2)) + 1
     }
 
     /// A bound of what the quadratic through six nodes is farther off where the colour of the surface differs by `range`, Q0.16, between corners: a

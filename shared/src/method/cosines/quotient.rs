@@ -39,6 +39,10 @@ pub(super) const RANGE: u32 = 20;
 pub(super) const LEVEL: u32 = 22;
 /// Fraction bits of a level at a pixel, which is the upper half of the product of a walked level and half a reciprocal length, Q2.30.
 pub(super) const PIXEL: u32 = LEVEL - 3;
+/// Bits of the range of shares of a colour at nodes, which are Q1.[`SHARE_NODE`] in [0, 1].
+const SHARES: u32 = SHARE_NODE + 1;
+/// Fraction bits of a share of a colour at a node.
+const SHARE_NODE: u32 = SHARE - 1;
 /// Bits of the range of numerators at nodes, in steps of the table.
 const STEPS: u32 = 26;
 
@@ -217,7 +221,7 @@ pub(super) fn is_plane(setup: &TriangleSetup<'_>, albedos: &[Albedo; 3]) -> bool
 pub(super) fn colour(setup: &TriangleSetup<'_>, albedos: &[Albedo; 3]) -> Plane<3> {
     let [a, b, c] = map(*albedos, |albedo| map(albedo.shares(), |share| (share + 1) >> 1));
     let nodes = [[a[0], b[0], c[0]], [a[1], b[1], c[1]], [a[2], b[2], c[2]]];
-    Nodes::<3, 3, 16>::new(nodes, COLOUR - 15).fit(setup.gradients)
+    Nodes::<3, 3, SHARES>::new(nodes, COLOUR - SHARE_NODE).fit(setup.gradients)
 }
 
 /// Draws `setup` under two constant lights.

@@ -65,7 +65,8 @@ impl Loops for Gouraud {
                 LinearWay::InSpace => return None,
             }
         }
-        if !THREE && setup.albedos().is_some() {
+        // In colours, meshes with colours at their corners have three channels.
+        if C::GRAY && setup.albedos().is_some() {
             return Some(Shading::fill_one(setup, || setup.levels().map(|[level, ..]| level), tables, band));
         }
         if !THREE {
