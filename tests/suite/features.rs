@@ -3,38 +3,42 @@
 use crate::{
     golden::root,
     lights::{lit, spotlight},
-    parts::Parts,
+    vertex_colours::coloured,
 };
 use microphong::{
     Outlines,
     features::Feature,
     stream::record::{SKY, VIEWER_LOCAL},
 };
-use microphong_sim::{board::build, bytes::StreamBytes, program, render::Format, scene};
+use microphong_sim::{board::build, bytes::StreamBytes, program, render::Format, scene, stress::records::Records};
 use std::{collections::BTreeSet, fs, process::Command};
 use tempfile::TempDir;
 
 /// Features of the core, each set compiled for this computer.
-const SETS: [&str; 4] = ["", "colours", "antialias,light-shapes,near-lights", "animation,colours,lights,objects"];
-const ALL: &str = "animation,antialias,colours,light-shapes,lights,near-lights,objects,redraw,text";
+const SETS: [&str; 5] = ["", "colours", "antialias,light-shapes,near-lights", "animation,colours,lights,objects", "colours,vertex-colours"];
+const ALL: &str = "animation,antialias,colours,light-shapes,lights,near-lights,objects,redraw,text,vertex-colours";
 
 const SCENES: [&str; 8] = ["teapot", "torus", "sphere-40", "peer-sphere-plastic", "peer-sphere-lights", "gauges", "board", "sensor"];
 
-/// Streams of the scenes, one without lights, one that is seen by a local viewer, one in the light of a spotlight, one with lines along outlines, and
-/// one in the light of the sky.
+/// Streams of the scenes, one without lights, one that is seen by a local viewer, one in the light of a spotlight, one with lines along outlines,
+/// one in the light of the sky, and one with colours at the corners of triangles.
 fn streams() -> Vec<(String, StreamBytes)> {
     let mut streams: Vec<_> = SCENES.map(|name| (name.to_owned(), scene::load(name).unwrap().stream)).into();
     let teapot = scene::load("teapot").unwrap().stream;
-    let changed = |change: fn(&mut Parts)| {
-        let mut parts = Parts::of(&teapot).unwrap();
+    let changed = |change: fn(&mut Records)| {
+        let mut parts = Records::of(&teapot.parse().unwrap());
         change(&mut parts);
-        StreamBytes::from(&parts.stream(|_| ())[..])
+        parts.written().unwrap()
     };
     streams.push(("no-lights".to_owned(), changed(|parts| parts.lights.clear())));
     streams.push(("local-viewer".to_owned(), changed(|parts| parts.header.camera.viewer = VIEWER_LOCAL)));
     streams.push(("spotlight".to_owned(), lit("teapot", &[spotlight()])));
     streams.push(("outlines".to_owned(), teapot.with_outlines(Outlines::new([255; 3])).unwrap()));
     streams.push(("sky".to_owned(), changed(|parts| parts.lights[0].kind = SKY)));
+    streams.push((
+        "coloured".to_owned(),
+        coloured(Records::of(&teapot.parse().unwrap()), &[[200, 90, 30], [20, 220, 250]], |_, corner| (corner % 2) as u8),
+    ));
     streams
 }
 

@@ -4,7 +4,6 @@
 //! The streams are the fuzzers' corpus, random ones of `microphong stress` with damaged bytes, and some whose values are the largest and smallest of
 //! the format, or one beyond. Each replaces the stream in the one program of a board.
 
-use crate::parts::Parts;
 use microphong::{
     format::{MAX_LIGHTS, Share},
     stream::{
@@ -19,6 +18,7 @@ use microphong_sim::{
     bytes::StreamBytes,
     records, scene,
     shader::Shader,
+    stress::records::Records,
     stress::{case::Case, fuzz, hostile, random::Random},
     verify,
 };
@@ -59,8 +59,11 @@ fn damaged(board: Board) -> Vec<Named> {
     named.take(cases(DAMAGED) as usize).collect()
 }
 
-/// The case's stream, to be drawn by the case's method if it can be drawn and the board has that method.
+/// The case's stream, to be drawn by the case's method if it can be drawn and the board has that method. It has no colours at corners, which the plain
+/// firmware does not draw.
 fn drawable(board: Board, case: Case) -> Vec<u8> {
+    let plain = case.stream.parse().ok().and_then(|stream| Records::of(&stream).without_colours().written());
+    let case = Case { stream: plain.unwrap_or(case.stream), ..case };
     let shader = if board.has(case.style.shader) { case.style.shader } else { Shader::AUTO };
     let prepared = case.stream.parse().ok().and_then(|stream| verify::prepare(case.stream.as_bytes(), shader, stream.header.frames).ok());
     prepared.unwrap_or_else(|| case.stream.as_bytes().to_vec())
@@ -75,7 +78,7 @@ fn label(colour: [u8; 3]) -> Label {
 type Change<T> = (&'static str, fn(&mut T));
 
 /// Values at the ends of their ranges, and beyond them.
-const LIMITS: [Change<Parts>; 28] = [
+const LIMITS: [Change<Records>; 28] = [
     ("least focal length", |parts| parts.header.camera.focal = MIN_FOCAL),
     ("largest focal length", |parts| parts.header.camera.focal = MAX_FOCAL),
     ("too large a focal length", |parts| parts.header.camera.focal = MAX_FOCAL + 1),
@@ -150,12 +153,12 @@ fn limits() -> Result<Vec<Named>> {
     let base = StreamBytes::from(&verify::prepare(base.as_bytes(), Shader::AUTO, frames)?[..]);
     let mut streams = vec![("no bytes".to_owned(), Vec::new()), ("a lone magic".to_owned(), stream::record::MAGIC.to_vec())];
     for (name, change) in LIMITS {
-        let mut parts = Parts::of(&base)?;
+        let mut parts = Records::of(&base.parse()?);
         change(&mut parts);
-        streams.push((name.to_owned(), parts.stream(|_| ())));
+        streams.push((name.to_owned(), parts.bytes(|_| ())));
     }
     for (name, lie) in LIES {
-        streams.push((format!("header that claims {name}"), Parts::of(&base)?.stream(lie)));
+        streams.push((format!("header that claims {name}"), Records::of(&base.parse()?).bytes(lie)));
     }
     Ok(streams)
 }

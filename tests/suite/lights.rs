@@ -1,9 +1,6 @@
 //! Lights with a range or a cone, and light from the sky.
 
-use crate::{
-    golden::{bless, check_pixels, root},
-    parts::Parts,
-};
+use crate::golden::{bless, check_pixels, root};
 use embedded_graphics::prelude::Size;
 use microphong::{
     Light,
@@ -15,6 +12,7 @@ use microphong_sim::{
     render::{self, Format, Settings},
     scene,
     shader::Shader,
+    stress::records::Records,
 };
 
 /// A light in front of the teapot, whose range and cone end on it.
@@ -55,11 +53,11 @@ fn pictures() {
 /// A white matt sphere under a white sky is (1 + y)/2 bright: full at its top, half at its equator.
 #[test]
 fn a_surface_gets_as_much_light_as_it_sees_of_the_sky() {
-    let mut parts = Parts::of(&scene::load("sphere-690").unwrap().stream).unwrap();
+    let mut parts = Records::of(&scene::load("sphere-690").unwrap().stream.parse().unwrap());
     parts.lights = vec![Light::sky([0, 1, 0], [1, 1, 1]).unwrap().with_camera()];
     let (black, white) = ([Gain::ZERO; 3], [Gain::ONE; 3]);
     parts.materials = vec![Material::new(black, white, black, 1)];
-    let stream = StreamBytes::from(&parts.stream(|_| ())[..]);
+    let stream = parts.written().unwrap();
     for shader in [Shader::GOURAUD, Shader::SIX_POINT, Shader::SQRT6, Shader::PHONG, Shader::AUTO] {
         let settings = Settings { size: Size::new(200, 200), style: shader.into(), band_rows: 16, format: Format::Rgb888 };
         let rgb = render::picture(stream.parse().unwrap(), &settings, 0).unwrap().rgb;

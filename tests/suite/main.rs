@@ -36,7 +36,6 @@ mod oracle_methods;
 mod overlay;
 mod panic_free;
 mod papers;
-mod parts;
 mod peers;
 mod perspective;
 mod raster;

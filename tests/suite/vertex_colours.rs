@@ -1,20 +1,22 @@
 //! Colours at the corners of triangles.
 
-use crate::parts::Parts;
 use embedded_graphics::prelude::Size;
 use microphong::{
     format::Gain,
     stream::record::{Colour, CornerColours, HAS_COLOURS, Light, Material},
 };
 use microphong_sim::{
+    board::{Board, build},
     bytes::StreamBytes,
     render::{self, Format, Settings},
     scene,
     shader::Shader,
+    stress::records::Records,
+    verify::{self, Request},
 };
 
 /// The scene of this name, whose corners have colours: `index` tells the number of each in the palette by its vertex.
-fn coloured(parts: Parts, palette: &[[u8; 3]], index: impl Fn(usize, u16) -> u8) -> StreamBytes {
+pub(crate) fn coloured(parts: Records, palette: &[[u8; 3]], index: impl Fn(usize, u16) -> u8) -> StreamBytes {
     let mut parts = parts;
     parts.colours = palette.iter().map(|&channels| Colour { channels, unused: 0 }).collect();
     let corner = |triangle: usize, corners: [u16; 3]| {
@@ -23,11 +25,11 @@ fn coloured(parts: Parts, palette: &[[u8; 3]], index: impl Fn(usize, u16) -> u8)
     };
     parts.corner_colours = parts.triangles.iter().enumerate().map(|(triangle, record)| corner(triangle, record.corners)).collect();
     parts.meshes.iter_mut().for_each(|mesh| mesh.flags |= HAS_COLOURS);
-    StreamBytes::from(&parts.stream(|_| ())[..])
+    parts.written().unwrap()
 }
 
-fn parts(name: &str) -> Parts {
-    Parts::of(&scene::load(name).unwrap().stream).unwrap()
+fn parts(name: &str) -> Records {
+    Records::of(&scene::load(name).unwrap().stream.parse().unwrap())
 }
 
 fn picture(stream: &StreamBytes, shader: Shader, format: Format) -> Vec<u8> {
@@ -61,7 +63,7 @@ fn white_changes_nothing() {
             parts.lights = lights.clone();
             parts
         };
-        let (white, stream) = (coloured(plain(), &[[255; 3]], |_, _| 0), StreamBytes::from(&plain().stream(|_| ())[..]));
+        let (white, stream) = (coloured(plain(), &[[255; 3]], |_, _| 0), plain().written().unwrap());
         for shader in CORE {
             for format in [Format::Rgb888, Format::Gray8] {
                 let most = difference(&picture(&white, shader, format), &picture(&stream, shader, format));
@@ -92,11 +94,34 @@ fn one_colour_is_a_material() {
             parts.materials = vec![Material::new(by(material.ambient()), by(material.diffuse()), material.specular(), material.exponent)];
             parts
         };
-        let (colour, stream) = (coloured(plain(false), &[[r, g, b]], |_, _| 0), StreamBytes::from(&plain(true).stream(|_| ())[..]));
+        let (colour, stream) = (coloured(plain(false), &[[r, g, b]], |_, _| 0), plain(true).written().unwrap());
         for shader in CORE {
             let (one, other) = (picture(&colour, shader, Format::Rgb888), picture(&stream, shader, Format::Rgb888));
             let most = difference(&one, &other);
             assert!(most <= 1 + u8::from(shader.name().starts_with("auto")), "{}, {kind} light: {most}", shader.name());
+        }
+    }
+}
+
+/// A board draws the bits of this computer: triangles of one colour and of several, small and large, under all kinds of light, by all methods of the core.
+#[test]
+fn a_board_draws_the_same_bits() {
+    let board = Board::Mps2An385;
+    let elf = build::styles(board, "rgb565,vertex-colours").unwrap();
+    let palette = [[255; 3], [0; 3], [200, 90, 30], [20, 220, 250], [90, 90, 90]];
+    for scene in ["teapot", "torus", "dodecahedron"] {
+        for (kind, lights) in lights() {
+            let mut parts = parts(scene);
+            parts.lights = lights;
+            let index = |triangle: usize, corner: u16| {
+                (if triangle.is_multiple_of(2) { triangle / 2 } else { corner.into() } % palette.len()) as u8
+            };
+            let stream = coloured(parts, &palette, index).as_bytes().to_vec();
+            for shader in CORE {
+                let scene = format!("{scene}, {kind} light, {}", shader.name());
+                let request = Request { board, scene, stream: stream.clone(), firmware_stream: None, shader, frames: 1, antialias: false };
+                verify::checksums(&request, &elf).unwrap();
+            }
         }
     }
 }

@@ -1,6 +1,6 @@
 //! The proof: a board's own firmware draws a scene on the board's emulated display, and every pixel must be the host's.
 
-use crate::{Board, Format, Recording, Until, budget::Budget, build, elf::Elf};
+use crate::{Board, Format, Recording, Until, budget::Budget, build, clocked, elf::Elf};
 use anyhow::{Context, Result, anyhow, bail, ensure};
 use embedded_graphics_core::{
     geometry::Size,
@@ -100,7 +100,8 @@ fn compare(request: &Request, elf: &Path, artefacts: &Path) -> Result<Report> {
     let elf = Elf::read(elf)?.with_stream(&board_stream)?;
 
     let stream = host_stream.parse()?;
-    let host = draw(*board, stream, (&[*shader], frames, request.antialias)).context("the board cannot draw this stream")?;
+    let how = How { shaders: &[*shader], frames, antialias: request.antialias, colours: false };
+    let host = draw(*board, stream, how).context("the board cannot draw this stream")?;
     let recording = crate::run(request.board, &elf, Until::LastFrame(frames))?;
     check_log(&recording, frames)?;
 
@@ -201,12 +202,40 @@ pub fn first_frame(board: Board, bytes: &[u8]) -> Result<Picture, String> {
     let bytes = StreamBytes::from(bytes);
     let stream = bytes.parse().map_err(|error| format!("stream: {error}"))?;
     let shaders: Vec<_> = Shader::ALL.into_iter().filter(|&shader| board.has(shader)).collect();
-    let mut pictures = draw(board, stream, (&shaders, 1, false)).map_err(|error| format!("setup: {error}"))?;
+    let how = How { shaders: &shaders, frames: 1, antialias: false, colours: false };
+    let mut pictures = draw(board, stream, how).map_err(|error| format!("setup: {error}"))?;
     Ok(pictures.remove(0))
 }
 
-/// The methods that there are, the number of frames, and whether outlines are smooth.
-type How<'s> = (&'s [Shader], usize, bool);
+/// What a program of a board draws, and what it has.
+#[derive(Clone, Copy)]
+struct How<'s> {
+    /// The methods that there are.
+    shaders: &'s [Shader],
+    frames: usize,
+    /// Whether outlines are smooth.
+    antialias: bool,
+    /// Whether corners may have colours.
+    colours: bool,
+}
+
+/// Runs `elf`, a program that shows no picture and draws colours at corners, and compares what it logs of its frames with what the host draws.
+///
+/// # Errors
+/// When a checksum or a count differs, the program does not get that far, or the stream cannot be drawn.
+pub fn checksums(request: &Request, elf: &Path) -> Result<()> {
+    let Request { board, shader, frames, .. } = request;
+    let bytes = prepare(&request.stream, *shader, *frames)?;
+    let stream = StreamBytes::from(bytes.as_slice());
+    let how = How { shaders: &[*shader], frames: usize::from(*frames), antialias: false, colours: true };
+    let host = draw(*board, stream.parse()?, how).context("the board cannot draw this stream")?;
+    let log = clocked(*board, &Elf::read(elf)?.with_stream(&bytes)?)?;
+    for (number, picture) in host.iter().enumerate() {
+        let expected = picture.line(number);
+        ensure!(log.contains(&expected), "{}: the program did not log `{expected}`, but {log:?}", request.scene);
+    }
+    Ok(())
+}
 
 /// Draws in the board's format.
 fn draw(board: Board, stream: Stream<'_>, how: How<'_>) -> Result<Vec<Picture>, RenderError> {
@@ -221,7 +250,7 @@ fn draw(board: Board, stream: Stream<'_>, how: How<'_>) -> Result<Vec<Picture>, 
 fn draw_in<C: Pixel, F: FromDrawn<C>>(
     board: Board,
     stream: Stream<'_>,
-    (shaders, frames, antialias): How<'_>,
+    How { shaders, frames, antialias, colours }: How<'_>,
 ) -> Result<Vec<Picture>, RenderError> {
     let Budget { height, layout } = board.budget();
     let layout = layout.antialias(antialias);
@@ -232,7 +261,7 @@ fn draw_in<C: Pixel, F: FromDrawn<C>>(
     let has = |feature| match feature {
         Feature::Text => board.has_text(),
         Feature::Antialias | Feature::LightShapes => antialias,
-        Feature::VertexColours => false,
+        Feature::VertexColours => colours,
         _ => true,
     };
     if let Some(feature) = Feature::missing(&stream, &Channels::of::<C>(), has) {

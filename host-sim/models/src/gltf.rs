@@ -7,11 +7,10 @@ mod document;
 mod pose;
 
 use crate::{
-    faults::{Faults, UNUSED_NORMAL, UNUSED_POSITION},
+    contents::{Colours, Contents},
+    faults::{UNUSED_NORMAL, UNUSED_POSITION},
     files::Folder,
-    import::Colours,
-    mesh::{Corner, Face, Smoothing, Soup, Submesh},
-    mtl::Material,
+    mesh::{Corner, Face, Smoothing, Submesh},
     obj::LARGEST,
     pbr,
     texture::{Images, Texture},
@@ -26,38 +25,18 @@ use gltf::{Document, Node, Primitive, Semantic, material::AlphaMode, mesh::Mode,
 use pose::Skin;
 use std::collections::{BTreeSet, HashSet};
 
-/// The contents of a glTF file.
-#[derive(Clone, Debug, Default)]
-pub struct Scene {
-    /// The triangles of its default scene.
-    pub soup: Soup,
-    /// The names of objects by which [`Submesh::object`] counts: of the nodes that have meshes, or else of their meshes. A name is empty where
-    /// the file gives none.
-    pub objects: Vec<String>,
-    /// Materials by which [`Submesh::material`] counts; `None` where a primitive has none.
-    pub materials: Vec<Option<Material>>,
-    /// Their textures.
-    pub(crate) textures: Vec<Option<Texture>>,
-    /// Contents that are left out, in words.
-    pub ignored: BTreeSet<&'static str>,
-    /// Wrong elements that are left out.
-    pub faults: Faults,
-    /// What else the user should know, in sentences.
-    pub remarks: Vec<String>,
-}
-
 /// Reads the default scene of a file, or its first scene if there is no default. Buffers may be in the file or in its folder.
 ///
 /// # Errors
 /// The error names the buffer, mesh or node, and its fault.
-pub(crate) fn parse(bytes: &[u8], folder: &Folder, colours: Colours) -> Result<Scene> {
+pub(crate) fn parse(bytes: &[u8], folder: &Folder, colours: Colours) -> Result<Contents> {
     let (document, blob) = document::open(bytes)?;
     let scene = document.default_scene().or_else(|| document.scenes().next()).context("glTF: it has no scene; export it with one")?;
     let bytes = Bytes::read(&document, blob, folder)?;
     let mut reader = Reader {
         document: &document,
         bytes,
-        scene: Scene { ignored: besides(&document), ..Scene::default() },
+        scene: Contents { ignored: besides(&document), ..Contents::default() },
         numbers: Vec::new(),
         folder,
         images: Images::default(),
@@ -126,7 +105,7 @@ struct Shape<'a> {
 struct Reader<'a> {
     document: &'a Document,
     bytes: Bytes,
-    scene: Scene,
+    scene: Contents,
     /// The number in the file of each material of the scene.
     numbers: Vec<Option<usize>>,
     folder: &'a Folder,
@@ -187,7 +166,7 @@ impl Reader<'_> {
             places.map_err(&mut left_out).ok().flatten().filter(|places| places.len() == count)
         });
         let submesh = Submesh { object: self.scene.objects.len() - 1, material: self.material(primitive) };
-        let Scene { soup, faults, .. } = &mut self.scene;
+        let Contents { soup, faults, .. } = &mut self.scene;
         let (first, first_normal) = (soup.positions.len(), soup.normals.len());
         let (first_colour, first_place) = (soup.colours.len(), soup.places.len());
         soup.colours.extend(

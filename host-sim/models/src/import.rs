@@ -1,12 +1,14 @@
 //! Reads a mesh and its materials from files.
 
+pub use crate::contents::Colours;
 use crate::{
-    faults::{COMPUTED_NORMAL, Faults, TURNED},
+    contents::Contents,
+    faults::{COMPUTED_NORMAL, TURNED},
     fields::quoted,
     files::{self, Folder, Missing},
     foreign, gltf,
     look::Surface,
-    mesh::{self, Mesh, Report, Soup, Weld},
+    mesh::{self, Mesh, Report, Weld},
     mtl, names,
     number::grouped,
     obj::{self, Obj},
@@ -18,10 +20,7 @@ use crate::{
     threemf,
 };
 use anyhow::{Context, Result, bail};
-use std::{
-    collections::{BTreeSet, HashMap},
-    path::Path,
-};
+use std::{collections::HashMap, path::Path};
 
 /// A mesh from a file.
 #[derive(Clone, Debug)]
@@ -58,43 +57,6 @@ pub struct Rules {
     pub allow_outside: bool,
     /// What becomes of the colours of textures and vertices.
     pub colours: Colours,
-}
-
-/// What becomes of the colours that a file has in textures and at its vertices.
-#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
-pub enum Colours {
-    /// Colours are left out, and images are not read.
-    None,
-    /// Triangles have colours at their corners.
-    #[default]
-    Corners,
-}
-
-impl Colours {
-    /// All of them.
-    pub const ALL: [Self; 2] = [Self::None, Self::Corners];
-
-    /// The name on the command line.
-    #[must_use]
-    pub const fn name(self) -> &'static str {
-        match self {
-            Self::None => "none",
-            Self::Corners => "corners",
-        }
-    }
-}
-
-/// The contents of a file of any format.
-#[derive(Default)]
-struct Contents {
-    soup: Soup,
-    objects: Vec<String>,
-    materials: Vec<Option<mtl::Material>>,
-    /// The textures of the materials, as far as they are known.
-    textures: Vec<Option<Texture>>,
-    ignored: BTreeSet<&'static str>,
-    faults: Faults,
-    remarks: Vec<String>,
 }
 
 /// Reads and welds an OBJ file with the files of its materials beside it, a glTF file with the buffers beside it, an STL, a PLY or a 3MF file.
@@ -161,7 +123,7 @@ fn contents(path: &Path, bytes: &[u8], folder: &Folder, colours: Colours) -> Res
     let plain = Contents { materials: vec![None], ..Contents::default() };
     // Of archives, which are refused otherwise, only these are read.
     if threemf::is_3mf(bytes, ends("3mf")) {
-        return of_3mf(bytes, colours).with_context(place);
+        return threemf::parse(bytes, colours).with_context(place);
     }
     foreign::refuse(path, bytes)?;
     foreign::refuse_stream(path, bytes)?;
@@ -170,12 +132,10 @@ fn contents(path: &Path, bytes: &[u8], folder: &Folder, colours: Colours) -> Res
         return Ok(Contents { soup, ignored, faults, ..plain });
     }
     if gltf::is_gltf(bytes) || ends("gltf") || ends("glb") {
-        let gltf::Scene { soup, objects, materials, textures, ignored, faults, remarks } =
-            gltf::parse(bytes, folder, colours).with_context(place)?;
-        return Ok(Contents { soup, objects, materials, textures, ignored, faults, remarks });
+        return gltf::parse(bytes, folder, colours).with_context(place);
     }
     if ends("3mf") {
-        return of_3mf(bytes, colours).with_context(place);
+        return threemf::parse(bytes, colours).with_context(place);
     }
     foreign::refuse_ending(path)?;
     if stl::is_stl(bytes, ends("stl")) {
@@ -188,11 +148,6 @@ fn contents(path: &Path, bytes: &[u8], folder: &Folder, colours: Colours) -> Res
         bail!("{}: the mesh has no faces, because {what}; export it as one of OBJ, glTF, STL, PLY and 3MF", place());
     }
     with_libraries(folder, obj, colours).with_context(place)
-}
-
-fn of_3mf(bytes: &[u8], colours: Colours) -> Result<Contents> {
-    let threemf::Scene { soup, objects, materials, textures, ignored, faults, remarks } = threemf::parse(bytes, colours)?;
-    Ok(Contents { soup, objects, materials, textures, ignored, faults, remarks })
 }
 
 /// An OBJ file with the materials of the files that it names.

@@ -1,6 +1,7 @@
 //! Models and scenes, from their files to triangle streams.
 
 pub mod bytes;
+pub mod contents;
 pub mod convert;
 pub mod convex;
 pub mod distance;

@@ -8,10 +8,10 @@ mod model;
 mod xml;
 
 use crate::{
-    faults::{self, Faults},
+    contents::{Colours, Contents},
+    faults,
     fields::quoted,
-    import::Colours,
-    mesh::{Corner, Face, Smoothing, Soup, Submesh},
+    mesh::{Corner, Face, Smoothing, Submesh},
     mtl::Material,
     number::grouped,
     obj::LARGEST,
@@ -38,25 +38,6 @@ const WITHOUT_COLOUR: faults::Kind = [
     "triangles have materials or colours that the file does not have, and are drawn without them",
 ];
 
-/// The contents of a 3MF file.
-#[derive(Clone, Debug, Default)]
-pub struct Scene {
-    /// The triangles of what is to be built.
-    pub soup: Soup,
-    /// The names of objects by which [`Submesh::object`] counts; a name is empty where the file gives none.
-    pub objects: Vec<String>,
-    /// Materials by which [`Submesh::material`] counts; `None` where triangles have none.
-    pub materials: Vec<Option<Material>>,
-    /// Their textures.
-    pub(crate) textures: Vec<Option<Texture>>,
-    /// Contents that are left out, in words.
-    pub ignored: BTreeSet<&'static str>,
-    /// Wrong elements that are left out.
-    pub faults: Faults,
-    /// What else the user should know, in sentences.
-    pub remarks: Vec<String>,
-}
-
 /// Whether a file is 3MF, or an archive that is named so.
 pub(crate) fn is_3mf(bytes: &[u8], named: bool) -> bool {
     archive::is_archive(bytes) && (named || archive::has_model(bytes))
@@ -66,12 +47,12 @@ pub(crate) fn is_3mf(bytes: &[u8], named: bool) -> bool {
 ///
 /// # Errors
 /// The error names the part of the archive, the line or the object, and its fault.
-pub fn parse(bytes: &[u8], colours: Colours) -> Result<Scene> {
+pub fn parse(bytes: &[u8], colours: Colours) -> Result<Contents> {
     of_archive(Archive::open(bytes).context("3MF")?, colours).context("3MF")
 }
 
 /// Reads the main model and all models that it needs, then places their objects.
-fn of_archive(mut archive: Archive<'_>, colours: Colours) -> Result<Scene> {
+fn of_archive(mut archive: Archive<'_>, colours: Colours) -> Result<Contents> {
     let mut names = vec![archive.main_model()?];
     let mut models: Vec<Model> = Vec::new();
     let mut numbers = HashMap::from([(archive::key(&names[0]), 0)]);
@@ -101,7 +82,7 @@ fn of_archive(mut archive: Archive<'_>, colours: Colours) -> Result<Scene> {
         colours,
         known: HashMap::new(),
         firsts: HashMap::new(),
-        scene: Scene::default(),
+        scene: Contents::default(),
     };
     builder.build()?;
     let mut scene = builder.scene;
@@ -145,7 +126,7 @@ struct Builder<'a> {
     known: HashMap<Look, usize>,
     /// Where the colours or places of a property group begin in those of the scene.
     firsts: HashMap<(usize, u32), usize>,
-    scene: Scene,
+    scene: Contents,
 }
 
 /// An object that is to be placed.

@@ -1,9 +1,10 @@
 //! 3MF: objects stand where components and items put them, with their colours; what is wrong is an error with a place and a remedy.
 
 use microphong_models::{
+    contents::Contents,
     import::{self, Colours, Imported, Rules},
     mesh::Weld,
-    threemf::{self, Scene},
+    threemf,
 };
 use proptest::prelude::*;
 use rawzip::{CompressionMethod, ZipArchiveWriter};
@@ -69,7 +70,7 @@ fn object(attributes: &str, paints: [&str; 4]) -> String {
 }
 
 #[track_caller]
-fn parsed(bytes: &[u8]) -> Scene {
+fn parsed(bytes: &[u8]) -> Contents {
     threemf::parse(bytes, Colours::Corners).unwrap()
 }
 
@@ -79,7 +80,7 @@ fn refused(bytes: &[u8]) -> String {
 }
 
 /// The corners of each face, where they stand.
-fn corners(scene: &Scene) -> Vec<Vec<[f64; 3]>> {
+fn corners(scene: &Contents) -> Vec<Vec<[f64; 3]>> {
     let soup = &scene.soup;
     soup.faces.iter().map(|face| face.corners.iter().map(|corner| soup.positions[corner.position]).collect()).collect()
 }

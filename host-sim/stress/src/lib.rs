@@ -16,7 +16,7 @@ pub mod fuzz;
 pub mod hostile;
 pub mod random;
 pub mod readers;
-mod records;
+pub mod records;
 pub mod sameness;
 pub mod scenes;
 pub mod shrink;

@@ -15,32 +15,47 @@ use microphong_models::bytes::StreamBytes;
 use zerocopy::IntoBytes;
 
 /// For each mesh the colours of the corners of each of its triangles; `None` if it has none.
-pub(crate) type Painted = Vec<Option<Vec<[Colour; 3]>>>;
+pub type Painted = Vec<Option<Vec<[Colour; 3]>>>;
 
 /// All records of a stream.
 #[derive(Clone, Debug)]
-pub(crate) struct Records {
+pub struct Records {
     /// The numbers of records in it are those of the lists when it is written.
-    pub(crate) header: Header,
-    pub(crate) meshes: Vec<Mesh>,
-    pub(crate) materials: Vec<Material>,
-    pub(crate) lights: Vec<Light>,
-    pub(crate) instances: Vec<Instance>,
-    pub(crate) tracks: Vec<Track>,
-    pub(crate) keys: Vec<Key>,
-    pub(crate) cuts: Vec<Cut>,
-    pub(crate) vertices: Vec<Vertex>,
-    pub(crate) triangles: Vec<Triangle>,
-    pub(crate) neighbours: Vec<Neighbours>,
-    pub(crate) corner_colours: Vec<CornerColours>,
-    pub(crate) colours: Vec<Colour>,
-    pub(crate) labels: Vec<Label>,
-    pub(crate) names: Vec<u8>,
+    pub header: Header,
+    /// The meshes, each followed by its coarser levels.
+    pub meshes: Vec<Mesh>,
+    /// The materials.
+    pub materials: Vec<Material>,
+    /// The lights.
+    pub lights: Vec<Light>,
+    /// The objects; none if all meshes are one.
+    pub instances: Vec<Instance>,
+    /// The movements.
+    pub tracks: Vec<Track>,
+    /// The keys of all movements.
+    pub keys: Vec<Key>,
+    /// Triangles that cut each other.
+    pub cuts: Vec<Cut>,
+    /// The vertices of all meshes.
+    pub vertices: Vec<Vertex>,
+    /// The triangles of all meshes and levels.
+    pub triangles: Vec<Triangle>,
+    /// The neighbours of all triangles; none if the stream has none.
+    pub neighbours: Vec<Neighbours>,
+    /// The colours at corners of the first triangles.
+    pub corner_colours: Vec<CornerColours>,
+    /// The palettes of all meshes.
+    pub colours: Vec<Colour>,
+    /// The texts over the picture.
+    pub labels: Vec<Label>,
+    /// The names of meshes, as bytes.
+    pub names: Vec<u8>,
 }
 
 impl Records {
     /// The records of a stream.
-    pub(crate) fn of(stream: &Stream<'_>) -> Self {
+    #[must_use]
+    pub fn of(stream: &Stream<'_>) -> Self {
         Self {
             header: *stream.header,
             meshes: stream.meshes.to_vec(),
@@ -61,7 +76,15 @@ impl Records {
     }
 
     /// A stream of these records; `None` if it is not valid.
-    pub(crate) fn written(&self) -> Option<StreamBytes> {
+    #[must_use]
+    pub fn written(&self) -> Option<StreamBytes> {
+        let stream = StreamBytes::from(&self.bytes(|_| ())[..]);
+        stream.parse().is_ok().then_some(stream)
+    }
+
+    /// The bytes of a stream of these records, whose numbers and length are right, but for what `lie` makes of its header.
+    #[must_use]
+    pub fn bytes(&self, lie: impl FnOnce(&mut Header)) -> Vec<u8> {
         let mut header = Header {
             meshes: self.meshes.len() as u16,
             materials: self.materials.len() as u16,
@@ -77,7 +100,9 @@ impl Records {
             labels: self.labels.len() as u8,
             ..self.header
         };
-        header.length = stream::length(&header)? + (self.neighbours.as_bytes().len() + self.names.len()) as u32;
+        let others = (self.neighbours.as_bytes().len() + self.names.len()) as u32;
+        header.length = stream::length(&header).map_or(u32::MAX, |length| length.saturating_add(others));
+        lie(&mut header);
         let mut bytes = [
             header.as_bytes(),
             self.meshes.as_bytes(),
@@ -97,13 +122,12 @@ impl Records {
         ]
         .concat();
         seal(&mut bytes);
-        let stream = StreamBytes::from(&bytes[..]);
-        stream.parse().is_ok().then_some(stream)
+        bytes
     }
 
     /// Leaves out all triangles whose numbers are not `kept`, with their colours. Vertices stay. Neighbours and cuts are left out, because they are
     /// numbers of triangles.
-    pub(crate) fn keep_triangles(&mut self, kept: impl Fn(usize) -> bool) {
+    pub fn keep_triangles(&mut self, kept: impl Fn(usize) -> bool) {
         let mut first_triangle = 0;
         for mesh in &mut self.meshes {
             let all = mesh.first_triangle as usize..(mesh.first_triangle + mesh.triangles) as usize;
@@ -118,7 +142,8 @@ impl Records {
     }
 
     /// Leaves out the colours of all meshes.
-    pub(crate) fn without_colours(mut self) -> Self {
+    #[must_use]
+    pub fn without_colours(mut self) -> Self {
         for mesh in &mut self.meshes {
             *mesh = Mesh { flags: mesh.flags & !HAS_COLOURS, palette: 0, ..*mesh };
         }
@@ -128,7 +153,8 @@ impl Records {
     }
 
     /// The colours of all corners, in place of palettes and numbers of colours.
-    pub(crate) fn painted(stream: &Stream<'_>) -> Painted {
+    #[must_use]
+    pub fn painted(stream: &Stream<'_>) -> Painted {
         let of = |mesh| {
             let MeshColours { palette, corners } = stream.colours_of(mesh)?;
             corners.iter().map(|corner| colours_at(corner, palette)).collect()
@@ -138,7 +164,8 @@ impl Records {
 
     /// Gives all corners these colours, by palettes as small as can be. `None` if there are too many colours, or if some levels of a mesh have
     /// colours and others have none.
-    pub(crate) fn paint(self, painted: &Painted) -> Option<Self> {
+    #[must_use]
+    pub fn paint(self, painted: &Painted) -> Option<Self> {
         let mut records = self.without_colours();
         let mut first = 0;
         while first < records.meshes.len() {

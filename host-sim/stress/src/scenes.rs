@@ -88,7 +88,7 @@ pub fn drawn(random: &mut Random, mesh: &Mesh, size: [u32; 2], look: &Look) -> O
     Some(styled(random, look.stream(&parts).ok()?, size))
 }
 
-/// A mesh, now and then with coarser levels, and in a third of all cases with colours at the corners.
+/// A mesh, now and then with coarser levels, and in a quarter of all cases with colours at the corners.
 pub fn parts(random: &mut Random, mesh: &Mesh, look: &Look) -> Option<Vec<Part>> {
     let (mut parts, _) = quantise(mesh);
     // Seldom, and of small meshes: to make coarser levels of large ones takes longer than all else.
@@ -98,7 +98,7 @@ pub fn parts(random: &mut Random, mesh: &Mesh, look: &Look) -> Option<Vec<Part>>
     }
     // All else of a scene is the same with colours and without them.
     let mut aside = random.aside();
-    if aside.once_in(3) {
+    if aside.once_in(4) {
         colours::paint(&mut aside, &mut parts);
     }
     Some(parts)

@@ -191,7 +191,7 @@ pub(super) fn run(board: Board, elf: &Elf, until: Until) -> Result<Recording> {
 /// Instructions in a tick of the timers of the boards `mps2-*` while [`clocked`].
 pub const INSTRUCTIONS_PER_TICK: f64 = 40.0 / 256.0;
 
-/// Runs a program that looks at nothing but a timer, to its end, and returns its log. Time is what the processor executes, 256 ns an
+/// Runs a program that looks at nothing but a timer, and that nobody looks at, to its end, and returns its log. Time is what the processor executes, 256 ns an
 /// instruction: exact, and far quicker than [`trace()`].
 ///
 /// # Errors
@@ -204,6 +204,9 @@ pub fn clocked(board: Board, elf: &Elf) -> Result<Vec<String>> {
     let mut emulator = Emulator::start(machine, command, decoder(elf)?)?;
     let mut lines = Vec::new();
     while let Some(line) = emulator.line()? {
+        if waits_after(&line) {
+            emulator.release()?;
+        }
         lines.push(line);
     }
     match emulator.wait()? {
@@ -242,12 +245,17 @@ pub fn stack(machine: Machine, elf: &Elf) -> Result<u64> {
     Ok(u64::from(DEEPEST) - clean as u64)
 }
 
+/// Whether firmware waits when it has logged this line, so that its display can be looked at.
+fn waits_after(line: &str) -> bool {
+    line.starts_with("frame ") || line.starts_with("error: ")
+}
+
 fn play(emulator: &mut Emulator, mut qmp: Qmp, screen: &Screen, until: Until, recording: &mut Recording) -> Result<()> {
     qmp.greet()?;
     while let Some(line) = emulator.line()? {
-        let shown = line.starts_with("frame ") || line.starts_with("error: ");
+        let waits = waits_after(&line);
         recording.log.push(line);
-        if shown {
+        if waits {
             // The picture is complete by now, and the firmware waits.
             recording.pictures.push(screen.picture(&mut qmp)?);
             if until == Until::FirstFrame && recording.failure().is_none() {
