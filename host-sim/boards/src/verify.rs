@@ -229,7 +229,7 @@ pub fn checksums(request: &Request, elf: &Path) -> Result<()> {
     let stream = StreamBytes::from(bytes.as_slice());
     let how = How { shaders: &[*shader], frames: usize::from(*frames), antialias: false, colours: true };
     let host = draw(*board, stream.parse()?, how).context("the board cannot draw this stream")?;
-    let log = clocked(*board, &Elf::read(elf)?.with_stream(&bytes)?)?;
+    let log = clocked(*board, &Elf::read(elf)?.with_stream(&bytes)?, *frames)?;
     for (number, picture) in host.iter().enumerate() {
         let expected = picture.line(number);
         ensure!(log.contains(&expected), "{}: the program did not log `{expected}`, but {log:?}", request.scene);

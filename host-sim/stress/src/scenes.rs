@@ -88,7 +88,7 @@ pub fn drawn(random: &mut Random, mesh: &Mesh, size: [u32; 2], look: &Look) -> O
     Some(styled(random, look.stream(&parts).ok()?, size))
 }
 
-/// A mesh, now and then with coarser levels, and in a quarter of all cases with colours at the corners.
+/// A mesh, now and then with coarser levels, and in about a fifth of all cases with colours at the corners.
 pub fn parts(random: &mut Random, mesh: &Mesh, look: &Look) -> Option<Vec<Part>> {
     let (mut parts, _) = quantise(mesh);
     // Seldom, and of small meshes: to make coarser levels of large ones takes longer than all else.

@@ -290,7 +290,7 @@ impl Program {
 }
 
 fn on_board(board: Board, elf: &Elf) -> Result<Vec<Count>> {
-    let lines = clocked(board, elf)?;
+    let lines = clocked(board, elf, 0)?;
     let counts = PEERS.iter().map(|peer| {
         let of_peer = |line: &String| line.strip_prefix("frame ")?.strip_prefix(peer.name)?.strip_prefix(" ").map(str::to_owned);
         let line = lines.iter().find_map(of_peer).with_context(|| format!("{} has logged nothing", peer.name))?;

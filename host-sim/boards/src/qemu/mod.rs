@@ -191,22 +191,23 @@ pub(super) fn run(board: Board, elf: &Elf, until: Until) -> Result<Recording> {
 /// Instructions in a tick of the timers of the boards `mps2-*` while [`clocked`].
 pub const INSTRUCTIONS_PER_TICK: f64 = 40.0 / 256.0;
 
-/// Runs a program that looks at nothing but a timer, and that nobody looks at, to its end, and returns its log. Time is what the processor executes, 256 ns an
+/// Runs a program that looks at nothing but a timer, and that nobody looks at, to its end, and returns its log. The program may pause as
+/// often as `pauses` says, for somebody to look at its display. Time is what the processor executes, 256 ns an
 /// instruction: exact, and far quicker than [`trace()`].
 ///
 /// # Errors
 /// When the program crashes, falls silent or fails.
-pub fn clocked(board: Board, elf: &Elf) -> Result<Vec<String>> {
+pub fn clocked(board: Board, elf: &Elf, pauses: u16) -> Result<Vec<String>> {
     let program = Scratch::new(elf.bytes())?;
     let machine = Machine::Arm(board.name());
     let mut command = machine.command(&program);
     command.args(["-icount", "shift=8,sleep=off"]);
     let mut emulator = Emulator::start(machine, command, decoder(elf)?)?;
+    for _ in 0..pauses {
+        emulator.release()?;
+    }
     let mut lines = Vec::new();
     while let Some(line) = emulator.line()? {
-        if waits_after(&line) {
-            emulator.release()?;
-        }
         lines.push(line);
     }
     match emulator.wait()? {
@@ -245,17 +246,12 @@ pub fn stack(machine: Machine, elf: &Elf) -> Result<u64> {
     Ok(u64::from(DEEPEST) - clean as u64)
 }
 
-/// Whether firmware waits when it has logged this line, so that its display can be looked at.
-fn waits_after(line: &str) -> bool {
-    line.starts_with("frame ") || line.starts_with("error: ")
-}
-
 fn play(emulator: &mut Emulator, mut qmp: Qmp, screen: &Screen, until: Until, recording: &mut Recording) -> Result<()> {
     qmp.greet()?;
     while let Some(line) = emulator.line()? {
-        let waits = waits_after(&line);
+        let shown = line.starts_with("frame ") || line.starts_with("error: ");
         recording.log.push(line);
-        if waits {
+        if shown {
             // The picture is complete by now, and the firmware waits.
             recording.pictures.push(screen.picture(&mut qmp)?);
             if until == Until::FirstFrame && recording.failure().is_none() {
