@@ -327,7 +327,13 @@ fn gltf_is_converted() {
     let place = Place::new();
     for file in ["a.gltf", "a.glb", "a.obj"] {
         let said = place.file(file, text).succeeds(&["convert", file, "-o", "out.tri"]);
-        for words in ["3 vertices, 1 triangle, ", "1 material from the file", "left out: backs of double-sided materials"] {
+        let back =
+            "1 triangle of an open surface has a back, which takes as much flash as the front; the file calls the material double-sided";
+        for words in ["6 vertices, 2 triangles, ", "1 material from the file", back] {
+            assert!(said.contains(words), "{said}");
+        }
+        let said = place.succeeds(&["convert", file, "--one-sided", "-o", "out.tri"]);
+        for words in ["3 vertices, 1 triangle, ", "backs of faces are not drawn; --two-sided draws them"] {
             assert!(said.contains(words), "{said}");
         }
     }
@@ -337,6 +343,29 @@ fn gltf_is_converted() {
     place.file("beside.gltf", beside).fails(&["convert", "beside.gltf"], 1, &["beside.gltf", "buffer 0", "beside the mesh"]);
     place.file("cut.glb", b"glTF\x02\0\0\0").fails(&["convert", "cut.glb"], 1, &["cut.glb", "GLB", "cut off"]);
     place.file("not.gltf", TETRAHEDRON).fails(&["convert", "not.gltf"], 1, &["not.gltf", "glTF", "line 1"]);
+}
+
+/// From behind, a surface with two sides is what the surface is when it is turned inside out; from the front it is what it was.
+#[test]
+fn open_surfaces_may_have_two_sides() {
+    let place = Place::new();
+    place.file("leaf.obj", "v -1 -1 0\nv 1 -1 0.5\nv 1 1 0\nv -1 1 0.5\nf 1 2 3\nf 1 3 4\n");
+    place.file("leaf.toml", "frames = 1\n[camera]\nat = [0, 0, 4]\nlooks-at = [0, 0, 0]\nview = 45\nnear = 2\n[[mesh]]\nname = \"leaf\"\nfile = \"leaf.obj\"\ntwo-sided = true\n[[object]]\nmesh = \"leaf\"\n");
+    let json = |text: String| serde_json::from_str::<serde_json::Value>(&text).unwrap();
+    let picture = |options: &[&str]| {
+        let said = json(place.succeeds(&[&["render", "leaf.obj", "--json", "-o", "leaf.png"], options].concat()));
+        (said["checksum"].clone(), said["pixels"].clone())
+    };
+    for azimuth in ["0", "40", "180", "220"] {
+        let [one, two, other] = [&[][..], &["--two-sided"], &["--flip"]].map(|option| picture(&[&["--azimuth", azimuth], option].concat()));
+        let (seen, unseen) = if azimuth.len() < 3 { (one, other) } else { (other, one) };
+        assert_eq!(two, seen, "{azimuth}");
+        assert_eq!(unseen.1, 0, "{azimuth}");
+    }
+    let triangles = |arguments: &[&str]| json(place.succeeds(&[arguments, &["-o", "out.tri", "--json"]].concat()))["triangles"].clone();
+    assert_eq!(triangles(&["convert", "leaf.obj", "--two-sided"]), 4);
+    assert_eq!(triangles(&["convert", "leaf.toml"]), 4);
+    place.fails(&["convert", "leaf.obj", "--two-sided", "--one-sided"], 2, &["--two-sided", "--one-sided"]);
 }
 
 /// Files of other formats are refused with the remedy, whatever they are called.

@@ -163,6 +163,8 @@ pub struct Converted {
     pub simplified: Option<Simplified>,
     /// The colours that triangles had at their corners before simplification.
     pub painted: Painted,
+    /// Number of triangles that were backs of others before simplification.
+    pub backs: usize,
 }
 
 impl Converted {
@@ -173,7 +175,7 @@ impl Converted {
     pub fn read(path: &Path, options: &Options, steps: &dyn Steps) -> Result<Self> {
         let place = || path.display().to_string();
         steps.begin("reading the file", 1);
-        let Imported { mut mesh, report, mut objects, mut materials, faults, mut remarks, painted } =
+        let Imported { mut mesh, report, mut objects, mut materials, faults, mut remarks, painted, backs } =
             import::file_by(path, options.weld, options.rules)?;
         if options.repaint && materials.iter().any(Option::is_some) {
             remarks.push(format!("{} materials of the file have the one colour of --colour", materials.iter().flatten().count()));
@@ -215,7 +217,7 @@ impl Converted {
         let errors = look.tolerances(&parts, &options.levels);
         steps.begin("searching levels of detail", parts.len() * errors.len());
         levels::add(&mesh, &mut parts, &errors, &|| steps.step()).with_context(place)?;
-        Ok(Self { mesh, report, materials, faults, remarks, parts, lost, look, simplified, painted })
+        Ok(Self { mesh, report, materials, faults, remarks, parts, lost, look, simplified, painted, backs })
     }
 
     /// The largest simplified mesh, to within a 64th, for whose stream there is room; `None` if there is none. `load` is the share of the room that a

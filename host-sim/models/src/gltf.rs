@@ -11,6 +11,7 @@ use crate::{
     faults::{UNUSED_NORMAL, UNUSED_POSITION},
     files::Folder,
     mesh::{Corner, Face, Smoothing, Submesh},
+    mtl::{Material, UNEVEN_LIGHT},
     obj::LARGEST,
     pbr,
     texture::{Images, Texture},
@@ -165,7 +166,7 @@ impl Reader<'_> {
             let places = attributes.get::<2>(&Semantic::TexCoords(places_of(&info)), Kind::Places);
             places.map_err(&mut left_out).ok().flatten().filter(|places| places.len() == count)
         });
-        let submesh = Submesh { object: self.scene.objects.len() - 1, material: self.material(primitive) };
+        let submesh = Submesh { object: self.scene.objects.len() - 1, material: self.material(primitive), is_back: false };
         let Contents { soup, faults, .. } = &mut self.scene;
         let (first, first_normal) = (soup.positions.len(), soup.normals.len());
         let (first_colour, first_place) = (soup.colours.len(), soup.places.len());
@@ -236,11 +237,17 @@ impl Reader<'_> {
             let pbr = material.pbr_metallic_roughness();
             let name = || material.name().map_or_else(|| format!("material {}", self.numbers.len()), str::to_owned);
             let gloss = material.pbr_specular_glossiness();
-            self.scene.materials.push(material.index().map(|_| match &gloss {
-                Some(gloss) => pbr::of_gloss(name(), gloss.diffuse_factor(), gloss.specular_factor(), gloss.glossiness_factor()),
-                None => pbr::material(name(), pbr.base_color_factor(), pbr.metallic_factor(), pbr.roughness_factor()),
-            }));
             let texture = colour_texture(&material);
+            // A texture says where light is sent out, and most of it is black.
+            let is_even = texture.is_none() && material.emissive_texture().is_none();
+            self.scene.materials.push(material.index().map(|_| {
+                let alike = match &gloss {
+                    Some(gloss) => pbr::of_gloss(name(), gloss.diffuse_factor(), gloss.specular_factor(), gloss.glossiness_factor()),
+                    None => pbr::material(name(), pbr.base_color_factor(), pbr.metallic_factor(), pbr.roughness_factor()),
+                };
+                let emission = if is_even { pbr::emission(material.emissive_factor(), material.emissive_strength()) } else { [0.0; 3] };
+                Material { emission, two_sided: material.double_sided(), ..alike }
+            }));
             if self.colours == Colours::None && texture.is_some() {
                 self.scene.ignored.insert("textures");
             }
@@ -258,8 +265,7 @@ impl Reader<'_> {
             };
             note(has_texture, "textures other than those of colour");
             note(material.alpha_mode() != AlphaMode::Opaque, "transparency");
-            note(material.emissive_factor() != [0.0; 3], "materials that shine by themselves");
-            note(material.double_sided(), "backs of double-sided materials");
+            note(!is_even && material.emissive_factor() != [0.0; 3], UNEVEN_LIGHT);
             self.numbers.len() - 1
         })
     }

@@ -2,13 +2,14 @@
 
 pub use crate::contents::Colours;
 use crate::{
+    backs::{self, Sides},
     contents::Contents,
     faults::{COMPUTED_NORMAL, TURNED},
     fields::quoted,
     files::{self, Folder, Missing},
     foreign, gltf,
     look::Surface,
-    mesh::{self, Mesh, Report, Weld},
+    mesh::{self, Mesh, Report, Submesh, Weld},
     mtl, names,
     number::grouped,
     obj::{self, Obj},
@@ -39,6 +40,8 @@ pub struct Imported {
     pub remarks: Vec<String>,
     /// The colours that triangles have at their corners.
     pub painted: Painted,
+    /// Number of triangles that are backs of others.
+    pub backs: usize,
 }
 
 /// Converts the materials of a mesh to those of a stream, under ambient light from 0 to 1. Values that the file does not define are taken from
@@ -57,6 +60,8 @@ pub struct Rules {
     pub allow_outside: bool,
     /// What becomes of the colours of textures and vertices.
     pub colours: Colours,
+    /// Which triangles have backs.
+    pub sides: Sides,
 }
 
 /// Reads and welds an OBJ file with the files of its materials beside it, a glTF file with the buffers beside it, an STL, a PLY or a 3MF file.
@@ -92,7 +97,14 @@ fn welded(path: &Path, bytes: &[u8], folder: &Folder, weld: Weld, rules: Rules) 
         Colours::Corners => paint::paint(&mut mesh, sources, &soup, &mut materials, &textures),
         Colours::None => Painted::default(),
     };
+    let has_two_sides = |submesh: Submesh| match rules.sides {
+        Sides::OfFile => materials[submesh.material].as_ref().is_some_and(|material| material.two_sided),
+        Sides::One => false,
+        Sides::Two => true,
+    };
+    let backs = backs::add(&mut mesh, has_two_sides);
     remarks.extend(painted.sentence());
+    remarks.extend(backs::sentence(backs, rules.sides));
     if painted.triangles == 0 {
         ignored.extend((!soup.colours.is_empty()).then_some("colours of vertices"));
         ignored.extend(textures.iter().any(Option::is_some).then_some("textures"));
@@ -113,7 +125,7 @@ fn welded(path: &Path, bytes: &[u8], folder: &Folder, weld: Weld, rules: Rules) 
         remarks.push(format!("left out: {}", ignored.into_iter().collect::<Vec<_>>().join(", ")));
     }
     let objects = names::distinct(objects, &mut remarks);
-    Ok(Imported { mesh, report, objects, materials, faults, remarks, painted })
+    Ok(Imported { mesh, report, objects, materials, faults, remarks, painted, backs })
 }
 
 /// Chooses the reader by how the file begins, or where that says nothing, by the ending of its name.

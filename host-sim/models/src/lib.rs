@@ -1,5 +1,6 @@
 //! Models and scenes, from their files to triangle streams.
 
+pub mod backs;
 pub mod bytes;
 pub mod contents;
 pub mod convert;

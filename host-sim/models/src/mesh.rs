@@ -48,6 +48,8 @@ pub struct Submesh {
     pub object: usize,
     /// Number of the material.
     pub material: usize,
+    /// Whether it is the back of a surface that another submesh is the front of.
+    pub is_back: bool,
 }
 
 /// Rules for faces around a vertex that share a normal.
@@ -75,7 +77,7 @@ pub struct Corner {
 }
 
 /// Triangles on shared vertices.
-#[derive(Clone, Debug, Default)]
+#[derive(Clone, Debug, Default, PartialEq)]
 pub struct Mesh {
     /// Position of each vertex.
     pub positions: Vec<V3>,

@@ -6,10 +6,10 @@ use crate::{
     fields::quoted,
     look::Surface,
     text::{logical_lines, plain, rest, without_comments},
-    vector::{V3, scale},
+    vector::{V3, add, scale},
 };
 use anyhow::{Context, Result, bail};
-use std::collections::BTreeSet;
+use std::{collections::BTreeSet, mem};
 
 /// The contents of an MTL file.
 #[derive(Clone, Debug, Default)]
@@ -33,14 +33,20 @@ pub struct Material {
     pub specular: Option<V3>,
     /// `Ns`.
     pub exponent: Option<f64>,
+    /// `Ke`: the light that the surface sends out, in whatever light it stands.
+    pub emission: V3,
     /// `map_Kd`: the file of the texture.
     pub texture: Option<String>,
+    /// Whether triangles are seen from behind as well.
+    pub two_sided: bool,
 }
 
 /// Diffuse colour of a material without `Kd`.
 const DIFFUSE: V3 = [0.6; 3];
 /// Exponent of a material without `Ns`.
 const EXPONENT: f64 = 30.0;
+/// What is left out of a material with textures.
+pub(crate) const UNEVEN_LIGHT: &str = "light that textured materials send out";
 /// The largest exponent of a stream.
 pub(crate) const SHARPEST: f64 = 1024.0;
 
@@ -67,7 +73,7 @@ impl Material {
     pub fn surface(&self, ambient_light: f64) -> Surface {
         let diffuse = self.diffuse.unwrap_or(DIFFUSE);
         Surface {
-            ambient: scale(self.ambient.unwrap_or(diffuse), ambient_light),
+            ambient: add(scale(self.ambient.unwrap_or(diffuse), ambient_light), self.emission),
             diffuse,
             specular: self.specular.unwrap_or_default(),
             exponent: self.exponent.unwrap_or(EXPONENT).round().clamp(1.0, SHARPEST) as u16,
@@ -81,6 +87,7 @@ impl Material {
 /// The error names the line and its fault.
 pub fn parse(text: &str) -> Result<Mtl> {
     let mut mtl = Mtl::default();
+    let mut shines_by_texture = Vec::new();
     for (number, line) in logical_lines(&plain(text)) {
         let mut words = line.split_whitespace();
         let Some(written) = words.next() else { continue };
@@ -96,7 +103,6 @@ pub fn parse(text: &str) -> Result<Mtl> {
         let ignored = match keyword.as_str() {
             "d" if words.clone().next() == Some("1") => None,
             "d" | "tr" | "tf" => Some("transparency"),
-            "ke" => Some("materials that shine by themselves"),
             "map_kd" => None,
             _ if keyword.starts_with("map_") || ["bump", "disp", "decal", "norm", "refl"].contains(&keyword.as_str()) => {
                 Some("textures other than those of colour")
@@ -109,6 +115,8 @@ pub fn parse(text: &str) -> Result<Mtl> {
         match keyword.as_str() {
             "ka" => material.ambient = colour(words).with_context(place)?.or(material.ambient),
             "kd" => material.diffuse = colour(words).with_context(place)?.or(material.diffuse),
+            "ke" => material.emission = colour(words).with_context(place)?.unwrap_or_default(),
+            "map_ke" => shines_by_texture.push(material.name.clone()),
             "ks" => material.specular = colour(words).with_context(place)?.or(material.specular),
             "ns" => material.exponent = Some(share(words.next().unwrap_or_default()).with_context(place)?),
             // Illumination models without a highlight.
@@ -120,6 +128,11 @@ pub fn parse(text: &str) -> Result<Mtl> {
     let whole: Vec<&str> = mtl.materials.iter().map(|material| material.name.as_str()).collect();
     let names = without_comments(&whole);
     for (material, name) in mtl.materials.iter_mut().zip(names) {
+        // A texture says where light is sent out, and most of it is black.
+        let is_even = material.texture.is_none() && !shines_by_texture.contains(&material.name);
+        if !is_even && mem::take(&mut material.emission) != [0.0; 3] {
+            mtl.ignored.insert(UNEVEN_LIGHT);
+        }
         material.name = name;
         // Maya writes black where the texture has the colour.
         if material.texture.is_some() && material.diffuse == Some([0.0; 3]) {
@@ -188,6 +201,22 @@ mod tests {
             (two.exponent, two.ambient, mtl.ignored.contains("textures other than those of colour")),
             (Some(7.0), Some([0.5; 3]), true)
         );
+    }
+
+    #[test]
+    fn light_that_is_sent_out_is_ambient() {
+        for (text, emission, is_told) in [
+            ("Kd 0\nKe 1 0.5 0", [1.0, 0.5, 0.0], false),
+            ("Ke 0.5", [0.5; 3], false),
+            ("Ke 0 0 0\nmap_Kd a.png", [0.0; 3], false),
+            ("Ke 1 1 1\nmap_Kd a.png", [0.0; 3], true),
+            ("map_Ke a.png\nKe 1 1 1", [0.0; 3], true),
+        ] {
+            let mtl = parse(&format!("newmtl a\n{text}\nnewmtl after\nKd 1\n")).unwrap();
+            let [material, _] = &mtl.materials[..] else { panic!("{mtl:?}") };
+            assert_eq!(material.surface(0.5).ambient, add(scale(material.surface(0.0).diffuse, 0.5), emission), "{text}");
+            assert_eq!(mtl.ignored.contains(UNEVEN_LIGHT), is_told, "{text}");
+        }
     }
 
     /// Black beside a texture is no colour, as Maya writes it; black alone is.

@@ -127,7 +127,7 @@ pub fn parse(text: &str) -> Result<Obj> {
                     }
                 };
                 naming.face();
-                soup.faces.push(Face { corners, submesh: Submesh { object: 0, material }, smoothing });
+                soup.faces.push(Face { corners, submesh: Submesh { object: 0, material, is_back: false }, smoothing });
                 lines.push(number);
             }
             // Names may have blanks in them.

@@ -42,6 +42,12 @@ pub(crate) fn of_gloss(name: String, [red, green, blue, _]: [f32; 4], specular: 
     }
 }
 
+/// The light that a material sends out, of a linear colour and how strong it is (KHR_materials_emissive_strength).
+pub(crate) fn emission(colour: [f32; 3], strength: Option<f32>) -> V3 {
+    let strength = f64::from(strength.unwrap_or(1.0));
+    encoded(colour.map(|c| (f64::from(c) * strength).clamp(0.0, 1.0)))
+}
+
 /// How far a material is a metal, from 0 to 1: the solution of the quadratic equation by which the two colours follow from a base colour.
 fn metallic(diffuse: V3, specular: V3) -> f64 {
     let brightness = |[r, g, b]: V3| (0.299 * r * r + 0.587 * g * g + 0.114 * b * b).sqrt();

@@ -73,7 +73,7 @@ pub fn quantise(mesh: &Mesh) -> (Vec<Part>, usize) {
         let palette = mesh.coloured(number).map(|coloured| coloured.palette);
         submeshes.entry((mesh.submesh(number), palette)).or_default().push(number);
     }
-    for ((Submesh { object, material }, palette), triangles) in submeshes {
+    for ((Submesh { object, material, .. }, palette), triangles) in submeshes {
         let palette = palette.map_or_else(Vec::new, |palette| mesh.palettes[usize::from(palette)].clone());
         // A stream refuses more materials than its numbers can count.
         let new = Part { object, material: material.try_into().unwrap_or(u16::MAX), palette, ..Part::default() };

@@ -3,9 +3,10 @@
 //! The text is TOML. It becomes a stream, and host and boards play only the stream.
 
 use crate::{
+    backs::Sides,
     bytes::StreamBytes,
     fields::{Field, Place, Table, quoted},
-    import::{self, Imported, surfaces},
+    import::{self, Imported, Rules, surfaces},
     look::{Cast, Cone, KEY, LIGHT_RANGE, Lamp, LampKind, Look, Member, Surface, Way},
     mesh::{CREASE, Mesh, Weld},
     mtl::Material,
@@ -202,9 +203,10 @@ impl Stock {
         let plastic = table.get("plastic", Field::flag)?.unwrap_or(false);
         let exponent = table.get("exponent", |field| field.integer(&(1..=MAX_EXPONENT.into())))?.unwrap_or(30) as u16;
         let crease = table.get("crease", |field| field.number(&FOLD))?.unwrap_or(CREASE);
+        let sides = table.get("two-sided", Field::flag)?.map_or(Sides::OfFile, |two| if two { Sides::Two } else { Sides::One });
         table.end()?;
         let (mut mesh, mut materials) = match (&file, &shape) {
-            (Some(file), None) => from_file(file, crease, folder, warn).with_context(|| table.place_of("file").to_string())?,
+            (Some(file), None) => from_file(file, (crease, sides), folder, warn).with_context(|| table.place_of("file").to_string())?,
             (None, Some(shape)) => (of_shape(shape, tube, &table.place_of("shape"))?, vec![None]),
             _ => return Err(table.place.error(format!("a mesh needs either `file`, or `shape` with {SHAPES}"))),
         };
@@ -255,9 +257,15 @@ fn name(field: Field<'_>) -> Result<String> {
     Ok(name)
 }
 
-fn from_file(file: &str, crease: f64, folder: Option<&Path>, warn: &dyn Fn(&str)) -> Result<(Mesh, Vec<Option<Material>>)> {
+fn from_file(
+    file: &str,
+    (crease, sides): (f64, Sides),
+    folder: Option<&Path>,
+    warn: &dyn Fn(&str),
+) -> Result<(Mesh, Vec<Option<Material>>)> {
     let folder = folder.context("there is no folder from which files could be read; use a shape")?;
-    let Imported { mesh, materials, faults, .. } = import::file(&folder.join(file), Weld { crease, ..Weld::default() })?;
+    let Imported { mesh, materials, faults, .. } =
+        import::file_by(&folder.join(file), Weld { crease, ..Weld::default() }, Rules { sides, ..Rules::default() })?;
     faults.iter().for_each(|fault| warn(&format!("{file}: {fault}")));
     Ok((mesh, materials))
 }

@@ -218,7 +218,7 @@ impl<'a> Builder<'a> {
             };
             self.scene.soup.faces.push(Face {
                 corners: order.map(corner).to_vec(),
-                submesh: Submesh { object: number, material: painted.material },
+                submesh: Submesh { object: number, material: painted.material, is_back: false },
                 smoothing: Smoothing::ByAngle,
             });
         }

@@ -251,6 +251,36 @@ fn nodes_move_turn_stretch_and_mirror() {
     assert!((reach(true) / reach(false) - 2.0).abs() < 1e-6, "{} {}", reach(true), reach(false));
 }
 
+/// Materials of glTF may have two sides, and may send out light; a texture says where, and that light is left out.
+#[test]
+fn materials_have_sides_and_send_out_light() {
+    let place = Place::new();
+    let (mut document, bytes) = cube().gltf();
+    document["meshes"][0]["primitives"][0]["material"] = 0.into();
+    document["textures"] = json!([{"source": 0}]);
+    document["images"] = json!([{"uri": "none.png"}]);
+    let mut of = |material: Value| {
+        document["materials"] = json!([material]);
+        import::file(&place.file("a.glb", glb(&document, &bytes)), Weld::default()).unwrap()
+    };
+    let light = |imported: &import::Imported| imported.materials[0].as_ref().unwrap().emission;
+    // The back of a closed surface cannot be seen.
+    let cube = of(json!({"doubleSided": true, "emissiveFactor": [0.0, 0.0, 0.0]}));
+    assert_eq!((cube.backs, light(&cube), cube.remarks.len()), (0, [0.0; 3], 0));
+    let strength = json!({"KHR_materials_emissive_strength": {"emissiveStrength": 4.0}});
+    let lamp = of(json!({"emissiveFactor": [1.0, 0.053_51, 0.0], "extensions": strength}));
+    assert!(
+        light(&lamp).iter().zip([1.0, 0.5, 0.0]).all(|(light, expected): (&f64, f64)| (light - expected).abs() < 1e-3),
+        "{:?}",
+        light(&lamp)
+    );
+    let surface = lamp.materials[0].as_ref().unwrap().surface(0.25);
+    assert_eq!(surface.ambient, [0, 1, 2].map(|k| 0.25 * surface.diffuse[k] + light(&lamp)[k]));
+    let uneven = of(json!({"emissiveFactor": [1.0, 1.0, 1.0], "emissiveTexture": {"index": 0}}));
+    assert_eq!(light(&uneven), [0.0; 3]);
+    assert_eq!(uneven.remarks, ["left out: light that textured materials send out, textures other than those of colour"]);
+}
+
 /// Each material is a mesh of the stream, and the output names what is left out.
 #[test]
 fn materials_become_meshes_and_the_rest_is_told() {

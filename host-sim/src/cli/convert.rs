@@ -33,11 +33,11 @@ use std::path::{Path, PathBuf};
 
 /// Convert a model file (OBJ, glTF 2.0, STL, PLY, 3MF) to a stream, the mesh file of a program
 ///
-/// Normals come from the file if at least half of the corners have one. Other normals are computed: light is smooth within each smoothing group of the
-/// file. If there are no groups, light is smooth across edges that fold by no more than --crease. Polygons, also concave ones, are cut into triangles.
-/// Materials come from the .mtl file beside an .obj file (Kd, Ks, Ka, Ns), or from the .gltf or .glb file (base colour, metallic, roughness). Of a glTF
-/// file the default scene is converted, where its nodes and skins put it. Of a 3MF file the items to be built are converted. The command prints everything in
-/// the file that it ignores.
+/// Normals come from the file if at least half of the corners have one. Other normals are computed: light is smooth within each smoothing group of
+/// the file. If there are no groups, light is smooth across edges that fold by no more than --crease. Polygons, also concave ones, are cut into
+/// triangles. Materials come from the .mtl file beside an .obj file (Kd, Ks, Ka, Ke, Ns), or from the .gltf or .glb file (base colour, metallic,
+/// roughness, emission). Of a glTF file the default scene is converted, where its nodes and skins put it. Of a 3MF file the items to be built are
+/// converted. The command prints everything in the file that it ignores.
 ///
 /// A model may name other files, such as materials and buffers. They are opened only if they are regular files in the folder of the model. A file may have
 /// at most 1 GiB.
@@ -130,6 +130,8 @@ struct Line<'a> {
     materials: usize,
     /// Colours at the corners of triangles, before the mesh is simplified, if there are any.
     colours: Option<Painted>,
+    /// Triangles that are backs of others, before the mesh is simplified.
+    backs: usize,
     vertices: usize,
     triangles: usize,
     welded: usize,
@@ -234,7 +236,7 @@ pub(crate) fn run(arguments: &Arguments) -> Result<Outcome> {
     let load = |stream: &Stream<'_>| Ok(picture.roomiest(stream, &picture.layout(stream)?)?.1);
     let remedy = if fits { None } else { Remedy::search((&converted, &options), chip.name, &load, &bars)? };
     drop(bars);
-    let Converted { mesh, report, materials, mut remarks, parts, lost, look, simplified, painted, .. } = converted;
+    let Converted { mesh, report, materials, mut remarks, parts, lost, look, simplified, painted, backs, .. } = converted;
     if let (Some(most), None) = (options.simplify, &simplified) {
         remarks.push(format!("not simplified: the mesh has no more than {} triangles", report::grouped(most as u64)));
     }
@@ -250,6 +252,7 @@ pub(crate) fn run(arguments: &Arguments) -> Result<Outcome> {
         by_object: by_object(mesh, stream.names.len()),
         materials: materials.iter().flatten().count() - painted.materials,
         colours: Some(painted).filter(|painted| painted.triangles > 0),
+        backs,
         vertices: parts.iter().map(|p| p.vertices.len()).sum(),
         triangles: parts.iter().map(|p| p.triangles.len()).sum(),
         welded: report.welded,
@@ -428,7 +431,11 @@ fn edges(line: &Line<'_>) -> Result<()> {
         (
             line.open_edges,
             ["edge has", "edges have"],
-            "one face only: the surface is open, and backs of faces are not drawn; --flip turns it inside out",
+            if line.backs > 0 {
+                "one face only: the surface is open"
+            } else {
+                "one face only: the surface is open, and backs of faces are not drawn; --two-sided draws them, and --flip turns it inside out"
+            },
         ),
         (
             line.opposed_edges,

@@ -3,6 +3,7 @@
 use super::{Usage, parse};
 use microphong::format::MAX_LIGHTS;
 use microphong_sim::{
+    backs::Sides,
     convert::{AZIMUTH, DISTANCE, ELEVATION, Finish, ORBIT, Options},
     import::{Colours, Rules},
     look::{Lamp, Surface},
@@ -23,6 +24,13 @@ pub(crate) struct MeshOptions {
     /// corrected without this option.
     #[arg(long)]
     flip: bool,
+    /// Draw both sides of open surfaces, such as leaves and cloth. Each triangle has a back, which takes as much flash as the front. Closed parts have no
+    /// backs. Without this option only materials that the file calls double-sided (glTF) have backs.
+    #[arg(long, conflicts_with = "one_sided")]
+    two_sided: bool,
+    /// Draw only the fronts of triangles, also of materials that the file calls double-sided.
+    #[arg(long)]
+    one_sided: bool,
     /// Largest angle in degrees at which an edge looks smooth: 0 shows all facets, 180 none. It applies to files without normals and smoothing
     /// groups.
     #[arg(long, value_name = "DEGREES", default_value_t = CREASE, value_parser = parse::crease)]
@@ -119,6 +127,11 @@ impl MeshOptions {
             rules: Rules {
                 strict: self.strict,
                 allow_outside: self.allow_outside,
+                sides: match (self.two_sided, self.one_sided) {
+                    (true, _) => Sides::Two,
+                    (_, true) => Sides::One,
+                    _ => Sides::OfFile,
+                },
                 colours: if self.colour.is_some() { Colours::None } else { self.colours },
             },
             merge: self.merge,
