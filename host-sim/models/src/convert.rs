@@ -235,6 +235,7 @@ impl Converted {
         // Loads are nearly linear in the number of triangles: the next number is where the line through the last two loads meets the aim.
         let mut last = [(0.0, 0.0), (too_many as f64, load(&self.stream()?)?)];
         steps.begin("searching the largest mesh that fits", SEARCH);
+        let mut expected = 0..SEARCH;
         while too_many - too_few > 1 + too_few / 64 {
             let [(first, first_load), (second, second_load)] = last;
             let guess = (first + (AIM - first_load) * (second - first) / (second_load - first_load)) as usize;
@@ -248,7 +249,9 @@ impl Converted {
             levels::add(&self.mesh, &mut with_levels, &self.look.tolerances(&parts, &options.levels), &|| ())?;
             let load = load(&self.look.stream(&with_levels)?)?;
             last = [last[1], (most as f64, load)];
-            steps.step();
+            if expected.next().is_some() {
+                steps.step();
+            }
             if load > 1.0 {
                 too_many = most;
                 continue;
@@ -259,7 +262,11 @@ impl Converted {
                 break;
             }
         }
-        Ok(largest.map(|(most, parts)| Largest { most, simplified: levels::difference(&whole, &parts, &|| steps.step()), parts }))
+        let measured = |(most, parts): (usize, Vec<Part>)| {
+            steps.begin("measuring how far it is from the whole mesh", whole.len());
+            Largest { most, simplified: levels::difference(&whole, &parts, &|| steps.step()), parts }
+        };
+        Ok(largest.map(measured))
     }
 
     /// The stream.

@@ -76,5 +76,51 @@ fn leans_little(faces: &[Face], vertices: &[Vertex], triangles: &[Triangle]) -> 
 /// Whether all corners lie below all planes.
 fn is_convex(mesh: &Mesh, faces: &[Face]) -> bool {
     let slack = SLACK / f64::from(1 << UNIT);
-    faces.iter().all(|face| mesh.positions.iter().all(|&p| dot(face.normal, sub(p, face.corners[0])) <= slack))
+    let points = Points::new(&mut mesh.positions.clone());
+    faces.iter().all(|face| points.are_below(face, slack))
+}
+
+/// Points in a box that is halved until few are left: boxes that lie below a plane as a whole spare the look at their points.
+struct Points {
+    low: V3,
+    high: V3,
+    inside: Inside,
+}
+
+enum Inside {
+    Few(Vec<V3>),
+    Halves(Box<[Points; 2]>),
+}
+
+/// Points at which a look takes no longer than at two boxes.
+const FEW: usize = 4;
+
+impl Points {
+    /// Sorts the points of at least one.
+    fn new(points: &mut [V3]) -> Self {
+        let extreme = |of: fn(f64, f64) -> f64| points.iter().fold(points[0], |m, p| [0, 1, 2].map(|k| of(m[k], p[k])));
+        let (low, high) = (extreme(f64::min), extreme(f64::max));
+        let inside = if points.len() <= FEW {
+            Inside::Few(points.to_vec())
+        } else {
+            let extent = |k: usize| high[k] - low[k];
+            let longest = if extent(0) >= extent(1).max(extent(2)) { 0 } else { 1 + usize::from(extent(2) > extent(1)) };
+            let middle = points.len() / 2;
+            points.select_nth_unstable_by(middle, |a, b| a[longest].total_cmp(&b[longest]));
+            let (one, other) = points.split_at_mut(middle);
+            Inside::Halves(Box::new([Self::new(one), Self::new(other)]))
+        };
+        Self { low, high, inside }
+    }
+
+    /// Whether no point lies more than `slack` above the plane of a face.
+    fn are_below(&self, face: &Face, slack: f64) -> bool {
+        let height = |p: V3| dot(face.normal, sub(p, face.corners[0]));
+        let highest = [0, 1, 2].map(|k| if face.normal[k] > 0.0 { self.high[k] } else { self.low[k] });
+        height(highest) <= slack
+            || match &self.inside {
+                Inside::Few(points) => points.iter().all(|&p| height(p) <= slack),
+                Inside::Halves(halves) => halves.iter().all(|half| half.are_below(face, slack)),
+            }
+    }
 }
