@@ -18,27 +18,9 @@ const SHARE: f64 = 1.0 / 128.0;
 pub fn hausdorff(one: &[Corners], other: &[Corners], [least, most]: [f64; 2]) -> Option<f64> {
     let mut search = Search { bound: least, most };
     for (from, to) in [(one, other), (other, one)] {
-        search.raise(&mut from.to_vec(), &to.iter().map(Around::new).collect::<Vec<_>>());
+        search.raise(&mut from.to_vec(), &to.iter().collect::<Vec<_>>());
     }
     Some(search.bound).filter(|&bound| bound <= most)
-}
-
-/// A triangle in a ball around its centre of gravity.
-#[derive(Clone, Copy)]
-struct Around<'t> {
-    triangle: &'t Corners,
-    centre: V3,
-    radius: f64,
-}
-
-impl<'t> Around<'t> {
-    fn new(triangle: &'t Corners) -> Self {
-        let [a, b, c] = *triangle;
-        let centre = scale(add(a, add(b, c)), 1.0 / 3.0);
-        // More than rounding takes from it.
-        let radius = [a, b, c].map(|corner| length(sub(corner, centre))).into_iter().fold(0.0, f64::max) + 1e-9;
-        Self { triangle, centre, radius }
-    }
 }
 
 struct Search {
@@ -49,24 +31,21 @@ struct Search {
 
 impl Search {
     /// Raises the bound to the distance of all points of `from` from the nearest of `near`, or to more than `most`.
-    fn raise(&mut self, from: &mut [Corners], near: &[Around<'_>]) {
+    fn raise(&mut self, from: &mut [Corners], near: &[&Corners]) {
         if self.bound > self.most {
             return;
         }
         let (centre, radius) = ball(from);
-        // No point of the ball lies farther than the distance of its centre plus its radius from what is nearest to it. Centres of triangles leave
-        // few of them whose own distance has to be known.
-        let centres: Vec<f64> = near.iter().map(|around| length(sub(around.centre, centre))).collect();
-        let most = centres.iter().copied().fold(f64::INFINITY, f64::min) + 2.0 * radius;
-        let near = near.iter().zip(&centres).filter(|&(around, &d)| d - around.radius <= most);
-        let near: Vec<_> = near.map(|(around, _)| (*around, distance(centre, around.triangle))).collect();
-        let least = near.iter().map(|&(_, distance)| distance).fold(f64::INFINITY, f64::min);
+        let distances: Vec<f64> = near.iter().map(|triangle| distance(centre, triangle)).collect();
+        let least = distances.iter().copied().fold(f64::INFINITY, f64::min);
         if least + radius <= self.bound {
             return;
         }
-        let near: Vec<_> = near.into_iter().filter(|&(_, distance)| distance <= least + 2.0 * radius).map(|(around, _)| around).collect();
+        // No point of the ball lies farther than that plus its radius from what is nearest to it.
+        let near: Vec<&Corners> =
+            near.iter().zip(&distances).filter(|&(_, &d)| d <= least + 2.0 * radius).map(|(triangle, _)| *triangle).collect();
         if let [triangle] = from {
-            let corners = triangle.map(|corner| near.iter().map(|other| distance(corner, other.triangle)).collect::<Vec<_>>());
+            let corners = triangle.map(|corner| near.iter().map(|other| distance(corner, other)).collect::<Vec<_>>());
             let nearest = corners.iter().map(|corner| corner.iter().copied().fold(f64::INFINITY, f64::min));
             let farthest = nearest.fold(0.0, f64::max);
             // Above it, so that what lies around a farthest point need not be cut for ever.

@@ -191,9 +191,8 @@ pub(super) fn run(board: Board, elf: &Elf, until: Until) -> Result<Recording> {
 /// Instructions in a tick of the timers of the boards `mps2-*` while [`clocked`].
 pub const INSTRUCTIONS_PER_TICK: f64 = 40.0 / 256.0;
 
-/// Runs a program that looks at nothing but a timer, and that nobody looks at, to its end, and returns its log. The program may pause as
-/// often as `pauses` says, for somebody to look at its display. Time is what the processor executes, 256 ns an
-/// instruction: exact, and far quicker than [`trace()`].
+/// Runs a program that looks at nothing but a timer, to its end, and returns its log. Firmware that waits for the host after a frame may do so `pauses`
+/// times, and goes on at once. Time is what the processor executes, 256 ns an instruction: exact, and far quicker than [`trace()`].
 ///
 /// # Errors
 /// When the program crashes, falls silent or fails.
