@@ -22,13 +22,15 @@ pub enum Feature {
     Objects,
     /// Labels, which are texts over the picture.
     Text,
+    /// Textures.
+    Textures,
     /// Meshes with colours at the corners of their triangles.
     VertexColours,
 }
 
 impl Feature {
     /// All features that a mesh file can need.
-    pub const ALL: [Self; 9] = [
+    pub const ALL: [Self; 10] = [
         Self::Animation,
         Self::Antialias,
         Self::Colours,
@@ -37,6 +39,7 @@ impl Feature {
         Self::NearLights,
         Self::Objects,
         Self::Text,
+        Self::Textures,
         Self::VertexColours,
     ];
 
@@ -52,6 +55,7 @@ impl Feature {
             Self::NearLights => "near-lights",
             Self::Objects => "objects",
             Self::Text => "text",
+            Self::Textures => "textures",
             Self::VertexColours => "vertex-colours",
         }
     }
@@ -69,6 +73,7 @@ impl Feature {
             Self::NearLights => cfg!(feature = "near-lights"),
             Self::Objects => cfg!(feature = "objects"),
             Self::Text => cfg!(feature = "text"),
+            Self::Textures => cfg!(feature = "textures"),
             Self::VertexColours => cfg!(feature = "vertex-colours"),
         }
     }
@@ -86,6 +91,10 @@ pub(crate) const OBJECTS: bool = Feature::Objects.is_on();
 pub(crate) const VERTEX_COLOURS: bool = Feature::VertexColours.is_on();
 /// 1 in a program whose triangles may have colours at their corners, otherwise 0: the room for what only these need.
 pub(crate) const COLOURED: usize = VERTEX_COLOURS as usize;
+/// Whether meshes may have textures.
+pub(crate) const TEXTURES: bool = Feature::Textures.is_on();
+/// 1 in a program whose meshes may have textures, otherwise 0, as [`COLOURED`].
+pub(crate) const TEXTURED: usize = TEXTURES as usize;
 
 /// Whether a frame can draw only what has changed.
 pub(crate) const REDRAW: bool = cfg!(feature = "redraw");

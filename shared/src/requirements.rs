@@ -29,6 +29,7 @@ impl Feature {
             Self::NearLights => !stream.is_constant(),
             Self::Objects => stream.instances.len() > 1,
             Self::Text => !stream.labels.is_empty(),
+            Self::Textures => !stream.textures.is_empty(),
             Self::VertexColours => !stream.corner_colours.is_empty(),
         }
     }
@@ -39,9 +40,9 @@ impl Feature {
     pub fn missing(stream: &Stream<'_>, channels: &Channels, has: impl Fn(Self) -> bool) -> Option<Self> {
         // Each feature is asked for by name, so that the compiler drops the check if the program has it.
         let lacks = |feature: Self| (!has(feature) && feature.is_needed_by(stream, channels)).then_some(feature);
-        let [animation, antialias, colours, lights, light_shapes, near_lights, objects, text, vertex_colours] = Self::ALL;
+        let [animation, antialias, colours, lights, light_shapes, near_lights, objects, text, textures, vertex_colours] = Self::ALL;
         let scene = lacks(animation).or_else(|| lacks(objects)).or_else(|| lacks(text)).or_else(|| lacks(antialias));
         let lights = || lacks(lights).or_else(|| lacks(near_lights)).or_else(|| lacks(light_shapes));
-        scene.or_else(lights).or_else(|| lacks(vertex_colours)).or_else(|| lacks(colours))
+        scene.or_else(lights).or_else(|| lacks(vertex_colours)).or_else(|| lacks(textures)).or_else(|| lacks(colours))
     }
 }

@@ -261,7 +261,7 @@ fn draw_in<C: Pixel, F: FromDrawn<C>>(
     let has = |feature| match feature {
         Feature::Text => board.has_text(),
         Feature::Antialias | Feature::LightShapes => antialias,
-        Feature::VertexColours => colours,
+        Feature::VertexColours | Feature::Textures => colours,
         _ => true,
     };
     if let Some(feature) = Feature::missing(&stream, &Channels::of::<C>(), has) {

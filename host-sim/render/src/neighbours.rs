@@ -61,6 +61,9 @@ pub fn with_neighbours(stream: &Stream<'_>) -> Result<Vec<u32>> {
         neighbours.as_bytes(),
         stream.corner_colours.as_bytes(),
         stream.colours.as_bytes(),
+        stream.textures.as_bytes(),
+        stream.texture_corners.as_bytes(),
+        stream.texels,
         stream.labels.as_bytes(),
         stream.names,
     ]

@@ -97,6 +97,10 @@ impl Board {
             "the firmware of {name} draws no colours at corners; convert the mesh with --colours none, or write a program with the cargo feature \
              vertex-colours"
         );
+        ensure!(
+            stream.textures.is_empty(),
+            "the firmware of {name} draws no textures; convert the mesh with --colours none, or write a program with the cargo feature textures"
+        );
         let size = Size::new(layout.width as u32, *height as u32);
         let mut memory = vec![0; layout.words::<Rgb565>()];
         let shader = Shader::of(stream)?;

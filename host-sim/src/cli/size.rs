@@ -182,6 +182,7 @@ fn features_of(scene: &Scene, arguments: &Arguments) -> Result<Vec<Features>> {
         (Feature::LightShapes, "these lights"),
         (Feature::Antialias, "the lines along outlines"),
         (Feature::VertexColours, "the colours, by convert --colours none"),
+        (Feature::Textures, "the textures, by convert --colours none"),
     ];
     for (feature, what) in lacking {
         let name = feature.name();

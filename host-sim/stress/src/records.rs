@@ -5,8 +5,8 @@ use microphong::{
     stream::{
         self, MeshColours,
         record::{
-            Colour, CornerColours, Cut, HAS_COLOURS, HAS_NEIGHBOURS, Header, Instance, Key, Label, Light, Material, Mesh, Neighbours,
-            PALETTE, Track, Triangle, Vertex,
+            Colour, CornerColours, Cut, HAS_COLOURS, HAS_NEIGHBOURS, HAS_TEXTURE, Header, Instance, Key, Label, Light, Material, Mesh,
+            Neighbours, PALETTE, Texture, TextureCorners, Track, Triangle, Vertex,
         },
         seal,
     },
@@ -44,8 +44,14 @@ pub struct Records {
     pub neighbours: Vec<Neighbours>,
     /// The colours at corners of the first triangles.
     pub corner_colours: Vec<CornerColours>,
-    /// The palettes of all meshes.
+    /// The palettes of all meshes and textures.
     pub colours: Vec<Colour>,
+    /// The textures.
+    pub textures: Vec<Texture>,
+    /// Where the triangles of meshes with textures lie in these.
+    pub texture_corners: Vec<TextureCorners>,
+    /// The texels of all textures.
+    pub texels: Vec<u8>,
     /// The texts over the picture.
     pub labels: Vec<Label>,
     /// The names of meshes, as bytes.
@@ -70,6 +76,9 @@ impl Records {
             neighbours: stream.neighbours.to_vec(),
             corner_colours: stream.corner_colours.to_vec(),
             colours: stream.colours.to_vec(),
+            textures: stream.textures.to_vec(),
+            texture_corners: stream.texture_corners.to_vec(),
+            texels: stream.texels.to_vec(),
             labels: stream.labels.to_vec(),
             names: stream.names.to_vec(),
         }
@@ -97,6 +106,9 @@ impl Records {
             triangles: self.triangles.len() as u32,
             corner_colours: self.corner_colours.len() as u32,
             colours: self.colours.len() as u16,
+            textures: self.textures.len() as u16,
+            texture_corners: self.texture_corners.len() as u32,
+            texels: self.texels.len() as u32,
             labels: self.labels.len() as u8,
             ..self.header
         };
@@ -117,6 +129,9 @@ impl Records {
             self.neighbours.as_bytes(),
             self.corner_colours.as_bytes(),
             self.colours.as_bytes(),
+            self.textures.as_bytes(),
+            self.texture_corners.as_bytes(),
+            &self.texels,
             self.labels.as_bytes(),
             &self.names,
         ]
@@ -125,12 +140,15 @@ impl Records {
         bytes
     }
 
-    /// Leaves out all triangles whose numbers are not `kept`, with their colours. Vertices stay. Neighbours and cuts are left out, because they are
+    /// Leaves out all triangles whose numbers are not `kept`, with their colours and their places in textures. Vertices stay. Neighbours and cuts are left out, because they are
     /// numbers of triangles.
     pub fn keep_triangles(&mut self, kept: impl Fn(usize) -> bool) {
-        let mut first_triangle = 0;
+        let (mut first_triangle, mut textured) = (0, Vec::new());
         for mesh in &mut self.meshes {
             let all = mesh.first_triangle as usize..(mesh.first_triangle + mesh.triangles) as usize;
+            if mesh.flags & HAS_TEXTURE != 0 {
+                textured.extend(all.clone().map(&kept));
+            }
             let triangles = all.filter(|&k| kept(k)).count() as u32;
             *mesh = Mesh { first_triangle, triangles, flags: mesh.flags & !HAS_NEIGHBOURS, ..*mesh };
             first_triangle += triangles;
@@ -139,16 +157,20 @@ impl Records {
         self.cuts.clear();
         self.triangles = those(&self.triangles, &kept);
         self.corner_colours = those(&self.corner_colours, &kept);
+        self.texture_corners = those(&self.texture_corners, |k| textured[k]);
     }
 
-    /// Leaves out the colours of all meshes.
+    /// Leaves out the colours and textures of all meshes.
     #[must_use]
     pub fn without_colours(mut self) -> Self {
         for mesh in &mut self.meshes {
-            *mesh = Mesh { flags: mesh.flags & !HAS_COLOURS, palette: 0, ..*mesh };
+            *mesh = Mesh { flags: mesh.flags & !(HAS_COLOURS | HAS_TEXTURE), palette: 0, ..*mesh };
         }
         self.corner_colours.clear();
         self.colours.clear();
+        self.textures.clear();
+        self.texture_corners.clear();
+        self.texels.clear();
         self
     }
 

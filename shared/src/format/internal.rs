@@ -2,7 +2,7 @@
 //!
 //! In the loops a value is a plain integer. Its number of fraction bits is one of the constants below.
 
-use fixed::types::{I4F12, I28F4, U0F16, U1F15, U2F14, U14F2};
+use fixed::types::{I4F12, I28F4, U0F16, U1F15, U2F14, U4F12, U14F2};
 
 /// Screen coordinate, pixels, Q28.4: pixel centres lie at 8/16. Corners are rounded to the nearest sixteenth.
 pub type Subpixel = I28F4;
@@ -18,6 +18,8 @@ pub type NormalLength = U1F15;
 pub type InverseAltitude = U14F2;
 /// Length in a picture, as a fraction of the picture's smaller side, Q4.12 in [-8, 8).
 pub type Share = I4F12;
+/// Place in a texture, in widths or heights of it, unsigned Q4.12 in [0, 16).
+pub type TextureCoordinate = U4F12;
 
 /// Fraction bits of [`Subpixel`].
 pub const SUBPIXEL: u32 = 4;
@@ -68,6 +70,8 @@ pub const HAVERSINE: u32 = 16;
 pub const NORMAL_LENGTH: u32 = 15;
 /// Fraction bits of [`InverseAltitude`].
 pub const INVERSE_ALTITUDE: u32 = 2;
+/// Fraction bits of [`TextureCoordinate`].
+pub const TEXTURE: u32 = 12;
 /// Number of entries in a table of colours: 256 levels, and [`BIAS`] more at each end.
 pub const RAMP: usize = 512;
 /// Fraction bits of an [`Intensity`](super::Intensity).

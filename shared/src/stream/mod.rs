@@ -19,9 +19,10 @@ pub use included::check_included;
 pub use names::MAX_NAME;
 pub use names::{Names, UnknownMesh};
 use record::{
-    CAMERA_TRACK, Colour, CornerColours, Cut, EYE_SPACE, HAS_COLOURS, HAS_NEIGHBOURS, Instance, Key, LIGHT_TRACK, Label, Light, MAGIC,
-    MAX_POSITION, Material, NO_OUTLINES, Neighbours, OBJECT_TRACK, OPEN, ORTHOGRAPHIC, OUTLINES_ALONE, OWN_MATERIALS, PALETTE, PERSPECTIVE,
-    POINT, RIGHT, SKY, Track, Triangle, VERSION, VIEWER_INFINITE, VIEWER_LOCAL, Vertex,
+    CAMERA_TRACK, Colour, CornerColours, Cut, EYE_SPACE, HAS_COLOURS, HAS_NEIGHBOURS, HAS_TEXTURE, Instance, Key, LARGEST_TEXTURE,
+    LIGHT_TRACK, Label, Light, MAGIC, MAX_POSITION, Material, NO_OUTLINES, Neighbours, OBJECT_TRACK, OPEN, ORTHOGRAPHIC, OUTLINES_ALONE,
+    OWN_MATERIALS, PALETTE, PERSPECTIVE, POINT, RIGHT, SKY, Texture, TextureCorners, Track, Triangle, VERSION, VIEWER_INFINITE,
+    VIEWER_LOCAL, Vertex,
 };
 #[doc(inline)]
 pub use record::{Camera, Header, Mesh};
@@ -73,9 +74,18 @@ pub struct Stream<'a> {
     /// Colours at the corners of the first triangles; empty if no mesh has any.
     #[doc(hidden)]
     pub corner_colours: &'a [CornerColours],
-    /// The palettes of all meshes.
+    /// The palettes of all meshes and textures.
     #[doc(hidden)]
     pub colours: &'a [Colour],
+    /// The textures.
+    #[doc(hidden)]
+    pub textures: &'a [Texture],
+    /// Where the triangles of meshes with textures lie in these, one mesh after the other.
+    #[doc(hidden)]
+    pub texture_corners: &'a [TextureCorners],
+    /// The texels of all textures.
+    #[doc(hidden)]
+    pub texels: &'a [u8],
     /// Texts that are drawn over the picture.
     #[doc(hidden)]
     pub labels: &'a [Label],
@@ -92,6 +102,20 @@ pub struct MeshColours<'a> {
     pub palette: &'a [Colour],
     /// For each triangle.
     pub corners: &'a [CornerColours],
+}
+
+/// The texture of a mesh.
+#[doc(hidden)]
+#[derive(Clone, Copy, Debug)]
+pub struct MeshTexture<'a> {
+    /// The colours of the texture, and of others behind them.
+    pub palette: &'a [Colour],
+    /// The texels, row by row: indices of the palette.
+    pub texels: &'a [u8],
+    /// The binary logarithms of width and height.
+    pub size: [u8; 2],
+    /// For each triangle.
+    pub corners: &'a [TextureCorners],
 }
 
 /// The reason why bytes are not a valid stream (a mesh file that `microphong convert` has written).
@@ -214,6 +238,9 @@ pub fn length(header: &Header) -> Option<u32> {
         (header.cuts, size_of::<Cut>()),
         (header.corner_colours, size_of::<CornerColours>()),
         (header.colours.into(), size_of::<Colour>()),
+        (header.textures.into(), size_of::<Texture>()),
+        (header.texture_corners, size_of::<TextureCorners>()),
+        (header.texels, 1),
     ];
     sizes.iter().try_fold(0u32, |sum, &(count, size)| sum.checked_add(count.checked_mul(size as u32)?))
 }
@@ -279,6 +306,9 @@ impl<'a> Stream<'a> {
             neighbours: take(&mut rest, neighbours as usize)?,
             corner_colours: take(&mut rest, header.corner_colours as usize)?,
             colours: take(&mut rest, header.colours.into())?,
+            textures: take(&mut rest, header.textures.into())?,
+            texture_corners: take(&mut rest, header.texture_corners as usize)?,
+            texels: take(&mut rest, header.texels as usize)?,
             labels: take(&mut rest, header.labels.into())?,
             names: rest,
         })
@@ -293,7 +323,8 @@ impl<'a> Stream<'a> {
         field(header.outlines <= OUTLINES_ALONE, "outlines", 0)?;
         let has_outlines = header.outlines != NO_OUTLINES;
         field(has_outlines || header.outline_colour == [0; 3], "outline colour", 0)?;
-        field(header.corner_colours <= header.triangles && header.unused == 0, "corner colours", 0)?;
+        field(header.corner_colours <= header.triangles, "corner colours", 0)?;
+        field(header.texels.is_multiple_of(4), "texels", 0)?;
         field(!has_outlines || header.triangles == 0 || !self.neighbours.is_empty(), "neighbours for outlines", 0)?;
         let fault = |fault: Option<&'static str>, i: usize| fault.map_or(Ok(()), |name| field(false, name, i));
         fault(header.camera.fault(), 0)?;
@@ -304,7 +335,7 @@ impl<'a> Stream<'a> {
         for (i, light) in self.lights.iter().enumerate() {
             fault(light.fault(), i)?;
         }
-        let (mut next_vertex, mut next_triangle) = (0, 0);
+        let (mut next_vertex, mut next_triangle, mut textured) = (0, 0, 0);
         let Some(mut finer) = self.meshes.first() else { return field(false, "meshes", 0) };
         for (i, mesh) in self.meshes.iter().enumerate() {
             // The first record has none before it, and so none that is finer than itself.
@@ -314,7 +345,8 @@ impl<'a> Stream<'a> {
             let is_coarser = mesh.error > finer.error
                 && mesh.vertices == finer.vertices
                 && mesh.material == finer.material
-                && mesh.palette == finer.palette;
+                && mesh.palette == finer.palette
+                && (mesh.flags ^ finer.flags) & HAS_TEXTURE == 0;
             field(!is_level || is_coarser, "mesh level", i)?;
             finer = mesh;
             next_vertex = expected.saturating_add(mesh.vertices.into());
@@ -330,12 +362,14 @@ impl<'a> Stream<'a> {
             let has_neighbours = mesh.flags & HAS_NEIGHBOURS != 0;
             field(has_neighbours != self.neighbours.is_empty() || header.triangles == 0, "mesh neighbours", i)?;
             self.check_colours(mesh, i)?;
+            textured += self.check_texture(mesh, i)?;
             for (k, Neighbours(edges)) in self.neighbours_of(mesh).iter().enumerate() {
                 let exists = |&other: &u16| other & OPEN == OPEN || u32::from(other & OPEN) < mesh.triangles;
                 field(edges.iter().all(exists), "triangle neighbour", mesh.first_triangle as usize + k)?;
             }
         }
         field(next_vertex == header.vertices && next_triangle == header.triangles, "mesh coverage", self.meshes.len())?;
+        field(textured == header.texture_corners, "texture corners", 0)?;
         self.check_scene()?;
         for (i, vertex) in self.vertices.iter().enumerate() {
             field(is_one(square(vertex.normal).into(), 2 * UNIT), "vertex normal", i)?;
@@ -359,7 +393,7 @@ impl<'a> Stream<'a> {
     /// The colours at the corners of the triangles of `mesh`, which is number `i`.
     fn check_colours(&self, mesh: &Mesh, i: usize) -> Result<(), StreamError> {
         let Some(MeshColours { palette, corners }) = self.colours_of(mesh) else {
-            return field(mesh.flags & HAS_COLOURS == 0 && mesh.palette == 0, "mesh colours", i);
+            return field(mesh.flags & HAS_COLOURS == 0 && (mesh.palette == 0 || mesh.flags & HAS_TEXTURE != 0), "mesh colours", i);
         };
         for (k, &corner) in corners.iter().enumerate() {
             let [a, b, c] = corner.colours.map(|colour| palette.get(usize::from(colour)));
@@ -367,6 +401,19 @@ impl<'a> Stream<'a> {
             field(is_right, "colour of a corner", mesh.first_triangle as usize + k)?;
         }
         Ok(())
+    }
+
+    /// The texture of `mesh`, which is number `i`. Returns the number of triangles that have one.
+    fn check_texture(&self, mesh: &Mesh, i: usize) -> Result<u32, StreamError> {
+        if mesh.flags & HAS_TEXTURE == 0 {
+            return Ok(0);
+        }
+        field(mesh.flags & HAS_COLOURS == 0, "mesh colours", i)?;
+        let MeshTexture { palette, texels, .. } =
+            self.texture_of(mesh).ok_or(StreamError::Field { name: "mesh texture", record: i as u32 })?;
+        let most = texels.iter().fold(0, |most, &texel| texel.max(most));
+        field(usize::from(most) < palette.len(), "texel of a mesh", i)?;
+        Ok(mesh.triangles)
     }
 
     /// Objects, and what moves.
@@ -465,6 +512,27 @@ impl<'a> Stream<'a> {
         let corners = self.corner_colours.get(mesh.first_triangle as usize..)?.get(..mesh.triangles as usize)?;
         let palette = self.colours.get(usize::from(mesh.palette) * PALETTE..)?;
         (mesh.flags & HAS_COLOURS != 0).then_some(MeshColours { palette, corners })
+    }
+
+    /// The texture of `mesh`, and where its triangles lie in it; `None` if it has none.
+    #[doc(hidden)]
+    #[must_use]
+    pub fn texture_of(&self, mesh: &Mesh) -> Option<MeshTexture<'a>> {
+        if mesh.flags & HAS_TEXTURE == 0 {
+            return None;
+        }
+        let &Texture { first_texel, size, palette, .. } = self.textures.get(usize::from(mesh.palette))?;
+        let [width, height] = size;
+        if width.max(height) > LARGEST_TEXTURE {
+            return None;
+        }
+        let texels = self.texels.get(first_texel as usize..)?.get(..1 << (width + height))?;
+        let palette = self.colours.get(usize::from(palette) * PALETTE..)?;
+        // Meshes follow one another in the order of their triangles.
+        let before = |other: &&Mesh| other.first_triangle < mesh.first_triangle && other.flags & HAS_TEXTURE != 0;
+        let first = self.meshes.iter().filter(before).fold(0u32, |sum, other| sum.saturating_add(other.triangles));
+        let corners = self.texture_corners.get(first as usize..)?.get(..mesh.triangles as usize)?;
+        Some(MeshTexture { palette, texels, size, corners })
     }
 
     /// Returns the neighbours of the triangles of `mesh`: one for each triangle, or none if the stream does not have them.

@@ -8,7 +8,8 @@
 #[doc(no_inline)]
 use crate::features::LIGHT_SHAPES;
 pub use crate::format::{
-    ErrorBudget, Focal, Gain, GeometricError, Haversine, InverseAltitude, Length, NormalLength, Radius, Reach, Rotation, Scale, Share, Unit,
+    ErrorBudget, Focal, Gain, GeometricError, Haversine, InverseAltitude, Length, NormalLength, Radius, Reach, Rotation, Scale, Share,
+    TextureCoordinate, Unit,
 };
 use zerocopy::{FromBytes, Immutable, IntoBytes, KnownLayout};
 
@@ -18,7 +19,7 @@ compile_error!("streams are read in place and are little-endian");
 /// First four bytes of every stream.
 pub const MAGIC: [u8; 4] = *b"mTRI";
 /// Version of the format.
-pub const VERSION: u16 = 10;
+pub const VERSION: u16 = 11;
 
 /// The first record of a stream (mesh file): the camera, the background, and the number of records of each kind. Most programs only read
 /// [`Self::frames`].
@@ -98,9 +99,15 @@ pub struct Header {
     /// The number of [`Colour`] records.
     #[doc(hidden)]
     pub colours: u16,
-    /// Zero.
+    /// The number of [`Texture`] records.
     #[doc(hidden)]
-    pub unused: u16,
+    pub textures: u16,
+    /// The number of [`TextureCorners`] records: one for each triangle of the meshes that have a texture.
+    #[doc(hidden)]
+    pub texture_corners: u32,
+    /// The number of texels of all textures, a multiple of 4.
+    #[doc(hidden)]
+    pub texels: u32,
     /// The camera at the beginning of the animation.
     pub camera: Camera,
 }
@@ -243,10 +250,10 @@ pub struct Mesh {
     pub error: u16,
     /// Properties as bits. Bit 0 is 1 if the mesh is closed and convex, so that none of its front faces can hide another; the renderer then
     /// leaves out depth tests. Bit 1 is 1 if the stream has the neighbours of the mesh's triangles. Bit 2 is 1 if the corners of its triangles have
-    /// colours. The other bits are unused.
+    /// colours. Bit 3 is 1 if the mesh has a texture. The other bits are unused.
     #[doc(hidden)]
     pub flags: u8,
-    /// The first [`Colour`] of the mesh's palette, in units of [`PALETTE`] colours.
+    /// The first [`Colour`] of the mesh's palette, in units of [`PALETTE`] colours; the index of its [`Texture`] if it has one.
     #[doc(hidden)]
     pub palette: u8,
 }
@@ -273,6 +280,9 @@ pub const HAS_NEIGHBOURS: u8 = 2;
 
 /// The stream has [`CornerColours`] for the triangles of the mesh.
 pub const HAS_COLOURS: u8 = 4;
+
+/// The mesh has a [`Texture`], and the stream has [`TextureCorners`] for its triangles. Their corners have no colours of their own.
+pub const HAS_TEXTURE: u8 = 8;
 
 /// Palettes begin at a multiple of this number of colours.
 pub const PALETTE: usize = 16;
@@ -537,6 +547,32 @@ impl CornerColours {
         Self { colours, range }
     }
 }
+
+/// A texture: a picture whose colours take the place of those at corners. It is repeated without end to the right and downwards.
+#[derive(FromBytes, IntoBytes, Immutable, KnownLayout, Clone, Copy, Debug, PartialEq, Eq)]
+#[repr(C)]
+pub struct Texture {
+    /// The texture's first texel among those of the stream. A texel is a byte: the index of a colour of the palette. The first row comes first.
+    pub first_texel: u32,
+    /// The binary logarithms of width and height, each at most [`LARGEST_TEXTURE`].
+    pub size: [u8; 2],
+    /// The first [`Colour`] of the palette, in units of [`PALETTE`] colours.
+    pub palette: u8,
+    /// Zero.
+    pub unused: u8,
+}
+
+/// The binary logarithm of the largest width and height of a [`Texture`]: 256 texels.
+pub const LARGEST_TEXTURE: u8 = 8;
+
+/// Where the corners of a triangle lie in the mesh's [`Texture`].
+#[derive(FromBytes, IntoBytes, Immutable, KnownLayout, Clone, Copy, Debug, PartialEq, Eq)]
+#[repr(transparent)]
+pub struct TextureCorners(
+    /// For each corner the distances from the left and from the upper side of the texture, in widths and in heights of it, each a
+    /// [`TextureCoordinate`]. They are rounded to the nearest; the error is at most 1/32 of a texel.
+    pub [[u16; 2]; 3],
+);
 
 /// The neighbours of a triangle, from which outlines are found. Entry `k` belongs to the edge that joins the corners `k` and `k + 1`.
 #[derive(FromBytes, IntoBytes, Immutable, KnownLayout, Clone, Copy, Debug, PartialEq, Eq)]
