@@ -324,8 +324,13 @@ fn models_open_only_files_beside_them() {
 
 /// A PNG of pixels in one row.
 fn row_of(pixels: &[[u8; 3]]) -> Vec<u8> {
+    image_of(pixels, pixels.len())
+}
+
+/// A PNG of rows of this width.
+fn image_of(pixels: &[[u8; 3]], width: usize) -> Vec<u8> {
     let mut bytes = Vec::new();
-    let mut encoder = png::Encoder::new(&mut bytes, pixels.len() as u32, 1);
+    let mut encoder = png::Encoder::new(&mut bytes, width as u32, (pixels.len() / width) as u32);
     encoder.set_color(png::ColorType::Rgb);
     encoder.set_depth(png::BitDepth::Eight);
     encoder.write_header().expect("a header").write_image_data(pixels.as_flattened()).expect("pixels");
@@ -411,6 +416,93 @@ fn faces_have_the_colours_of_textures_and_vertices() {
     assert_eq!(seen, [Some(patches[0]), Some([0, 128, 255]), None, Some(patches[0])]);
     // Equal palettes are one.
     assert!(stream.colours.len() == 17 && stream.meshes[0].palette == stream.meshes[3].palette && stream.materials.len() == 4);
+}
+
+/// A texture that colours at corners do not give is recommended, and becomes one of the stream with `--colours texture`.
+#[test]
+fn faces_have_textures_where_colours_at_corners_do_not_suffice() {
+    let place = Place::new();
+    let checkerboard: Vec<_> = (0..64).map(|k| if (k / 8 + k % 8) % 2 == 0 { [255, 0, 0] } else { [0, 0, 255] }).collect();
+    // All sides of a cube have the whole texture.
+    let sides: String = SIDES
+        .iter()
+        .map(|side| {
+            let corners = side[2..].split_whitespace().enumerate().map(|(k, corner)| format!(" {corner}/{}", k + 1));
+            format!("f{}\n", corners.collect::<String>())
+        })
+        .collect();
+    let cube = format!("mtllib a.mtl\n{CORNERS}vt 0 0\nvt 1 0\nvt 1 1\nvt 0 1\nusemtl paint\n{sides}");
+    place.file("a.mtl", "newmtl paint\nKd 1 1 1\nmap_Kd a.png\n").file("a.png", image_of(&checkerboard, 8)).file("a.obj", cube);
+    let said = place.converts(&["a.obj"]);
+    let words =
+        " % of the area of 1 material is farther than 24: --colours texture keeps the texture, for a program with the feature textures";
+    assert!(said.contains(words) && !said.contains("\"textures\""), "{said}");
+    let colours = &place.counts("a.obj")["colours"];
+    assert!(colours["lost_materials"] == 1 && colours["lost_area"].as_f64().is_some_and(|area| area > 0.5), "{colours}");
+    assert_eq!(colours["textures"], Value::Null);
+    let with_texture = ["a.obj", "--colours", "texture"];
+    let said = place.converts(&with_texture);
+    for words in [
+        "12 triangles have 1 texture of 8x8 texels, 80 bytes: 0 % of the area is farther than 24 of 255 from the file, the root of the mean square is 0.0",
+        "mesh 0: material 0 \"paint\", 12 triangles with a texture of 8x8",
+        "features = [\"textures\"]",
+    ] {
+        assert!(said.contains(words), "{words}: {said}");
+    }
+    assert_eq!((place.palette(), place.colours()), (vec![[0, 0, 255], [255, 0, 0]], vec![[1.0; 3]]));
+    let counts: Value = serde_json::from_str(&place.converts(&[&with_texture[..], &["--json"]].concat())).expect("JSON");
+    let textures = &counts["colours"]["textures"];
+    let fields = ["triangles", "bytes", "repeating", "multiplied"].map(|field| &textures[field]);
+    assert_eq!(
+        (fields, &textures["sizes"], &textures["lost_area"]),
+        ([&12.into(), &80.into(), &0.into(), &0.into()], &serde_json::json!([[8, 8]]), &0.0.into())
+    );
+    assert_eq!((&counts["colours"]["triangles"], &counts["list"][0]["texture"]), (&0.into(), &serde_json::json!([8, 8])));
+    let inspected = String::from_utf8(place.run(&["inspect", "out.tri"]).stdout).expect("text");
+    for words in
+        ["1 textures          8 bytes", "64 texels           64 bytes", "12 places          144 bytes", "2 colours           8 bytes"]
+    {
+        assert!(inspected.contains(words), "{words}: {inspected}");
+    }
+    assert!(!inspected.contains("corners  "), "{inspected}");
+    let inspected: Value = serde_json::from_slice(&place.run(&["inspect", "out.tri", "--json"]).stdout).expect("JSON");
+    assert_eq!(["textures", "texels", "texture_corners"].map(|field| &inspected[field]), [1, 64, 12]);
+    // Neighbours are found as without a texture, and one colour takes the place of all.
+    let plain = ["a.obj", "--antialias", "--colours", "none"];
+    let neighbours = |arguments: &[&str]| {
+        place.converts(arguments);
+        let bytes = StreamBytes::read(&place.0.path().join("out.tri")).expect("a stream");
+        bytes.parse().expect("a stream").neighbours.to_vec()
+    };
+    assert_eq!(neighbours(&[&with_texture[..], &["--antialias"]].concat()), neighbours(&plain));
+    place.converts(&[&with_texture[..], &["--colour", "00ff00"]].concat());
+    assert!(place.palette().is_empty());
+    // Sizes are powers of two.
+    for (arguments, words) in [
+        (&["--colours", "texture", "--texture-size", "100"][..], "one of 8, 16, 32, 64, 128, 256 is needed"),
+        (&["--texture-size", "64"], "--texture-size is the size of textures, which meshes have with --colours texture"),
+        (&["--colours", "textures"], "corners, texture"),
+    ] {
+        let output = place.run(&[&["convert", "a.obj"], arguments].concat());
+        let stderr = String::from_utf8_lossy(&output.stderr);
+        assert!(output.status.code() == Some(2) && stderr.contains(words), "{arguments:?}: {stderr}");
+    }
+    // A scene chooses for each mesh.
+    let mesh = |name: &str, more: &str| format!("[[mesh]]\nname = \"{name}\"\nfile = \"a.obj\"\n{more}[[object]]\nmesh = \"{name}\"\n");
+    let scene = |more: &str| {
+        let meshes = [mesh("one", "colours = \"texture\"\n"), mesh("two", more), mesh("plain", "colours = \"none\"\n")].concat();
+        place.file("a.toml", format!("frames = 1\n[camera]\nat = [0, 0, 5]\n{meshes}"));
+    };
+    scene("colours = \"texture\"\ntexture-size = 8\n");
+    place.converts(&["a.toml"]);
+    let bytes = StreamBytes::read(&place.0.path().join("out.tri")).expect("a stream");
+    let stream = bytes.parse().expect("a stream");
+    let seen: Vec<_> = stream.meshes.iter().map(|mesh| stream.texture_of(mesh).map(|texture| texture.corners.len())).collect();
+    assert_eq!((seen, stream.textures.len(), stream.texels.len()), (vec![Some(12), Some(12), None], 1, 64));
+    scene("texture-size = 9\n");
+    assert!(place.refuses("a.toml").contains("9 is not possible; use one of 8, 16, 32, 64, 128, 256"));
+    scene("colours = \"all\"\n");
+    assert!(place.refuses("a.toml").contains("there is no \"all\"; use one of none, corners, texture"));
 }
 
 /// Colours of glTF: a texture that its transform moves, times colours of vertices, which are linear.

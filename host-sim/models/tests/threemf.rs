@@ -1,6 +1,7 @@
 //! 3MF: objects stand where components and items put them, with their colours; what is wrong is an error with a place and a remedy.
 
 use microphong_models::{
+    coat::Coat,
     contents::Contents,
     import::{self, Colours, Imported, Rules},
     mesh::Weld,
@@ -196,7 +197,7 @@ fn triangles_have_colours_of_groups() {
     let Imported { mesh, materials, remarks, painted, .. } = import::file(&file, Weld::default()).unwrap();
     let names: Vec<_> = materials.iter().map(|material| material.as_ref().map(|material| &material.name[..])).collect();
     assert_eq!((names, painted.triangles, painted.of_one_colour), (vec![None, Some("white")], 3, 2));
-    assert_eq!(mesh.palettes, [[[0, 0, 255], [255, 0, 0], [0, 255, 0]]]);
+    assert_eq!(mesh.coats, [Coat::Palette(vec![[0, 0, 255], [255, 0, 0], [0, 255, 0]])]);
     assert!(remarks.iter().any(|remark| remark.starts_with("3 triangles have 3 colours")), "{remarks:?}");
     let error = import::file_by(&file, Weld::default(), Rules { strict: true, ..Rules::default() }).unwrap_err();
     assert!(format!("{error:#}").contains("triangle 4; --strict refuses it"), "{error:#}");
@@ -218,7 +219,7 @@ fn triangles_have_textures() {
     let Imported { mesh, materials, .. } = import::file(&file, Weld::default()).unwrap();
     let names: Vec<_> = materials.iter().flatten().map(|material| &material.name[..]).collect();
     // The lower row is blue, and most faces are there.
-    assert_eq!((names, &mesh.palettes[..]), (vec!["white"], &[vec![[0, 0, 255], [255, 0, 0]]][..]));
+    assert_eq!((names, &mesh.coats[..]), (vec!["white"], &[Coat::Palette(vec![[0, 0, 255], [255, 0, 0]])][..]));
     fs::write(&file, packed(&[("3D/3dmodel.model", text.as_bytes())])).unwrap();
     let Imported { remarks, .. } = import::file(&file, Weld::default()).unwrap();
     let without = Rules { colours: Colours::None, ..Rules::default() };
