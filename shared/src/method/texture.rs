@@ -9,7 +9,7 @@
 
 use crate::{
     features::{PERSPECTIVE, TEXTURES},
-    format::{FULL, Intensity, LEVEL},
+    format::{BIAS, FULL, INTENSITY, Intensity, LEVEL, WALK},
     interpolate::{
         Patch, Walker,
         field::{Field, Nodes},
@@ -22,7 +22,7 @@ use crate::{
     },
     math::vector::{map, zip},
     method::{
-        EXTRA, IntensityShader, LinearWay, Middles, RANGE, TriangleSetup, Walked, bias, channels,
+        EXTRA, IntensityShader, LinearWay, Middles, RANGE, TriangleSetup, bias, channels,
         node::mixed,
         perspective,
         products::{LinearNodes, fitted, linear, quadratic},
@@ -116,19 +116,22 @@ impl TriangleSetup<'_> {
         Nodes<N, 3, RANGE>: Field<Value = [u32; 3]>,
     {
         let nodes = |levels: [[i32; 3]; N]| Nodes::<N, 3, RANGE>::new(channels(levels), EXTRA).biased([bias(0); 3]);
-        let field = (nodes(parts.map(Parts::quarter)), nodes(parts.map(|parts| map(parts.specular, |level| level.min(FULL)))));
+        let field = (nodes(parts.map(|parts| quarters(parts.diffuse))), nodes(parts.map(|parts| quarters(parts.specular))));
         self.draw_textured(&field, Apart, canvas).unwrap_or(0)
     }
 }
 
-/// A quarter of a level is walked of ambient and diffuse light, because dark texels show more than 255 of it.
+/// A quarter of a level is walked, because dark texels show more than 255 of ambient and diffuse light, and a quadratic goes beyond its nodes.
 const QUARTER: u32 = 2;
 
-impl Parts {
-    /// A quarter of ambient and diffuse light, as far as it is no more than four times full intensity.
-    fn quarter(self) -> [i32; 3] {
-        map(self.diffuse, |level| ((level + (1 << (QUARTER - 1))) >> QUARTER).min(FULL))
-    }
+/// A quarter of these levels, as far as they are no more than four times full intensity.
+fn quarters(levels: [i32; 3]) -> [i32; 3] {
+    map(levels, |level| ((level + (1 << (QUARTER - 1))) >> QUARTER).min(FULL))
+}
+
+/// A walked quarter as an intensity, which may be beyond black and white.
+fn whole(quarter: u32) -> i32 {
+    ((quarter >> (WALK - INTENSITY - QUARTER)) as i32) - (BIAS << (INTENSITY + QUARTER))
 }
 
 /// Colours the light of another shader by a texture.
@@ -140,7 +143,7 @@ pub struct OnTexture<'f, S> {
     pub shader: S,
 }
 
-/// Interpolated levels of ambient and diffuse light, a quarter of them, and of highlights.
+/// Interpolated quarters of levels: of ambient and diffuse light, and of highlights.
 pub(crate) struct Apart;
 
 impl Albedo {
@@ -158,9 +161,9 @@ impl<V, S: IntensityShader<V>> IntensityShader<(V, [u32; 2])> for OnTexture<'_, 
 }
 
 impl IntensityShader<(([u32; 3], [u32; 3]), [u32; 2])> for OnTexture<'_, Apart> {
-    fn shade(&self, ((quarters, highlights), place): (([u32; 3], [u32; 3]), [u32; 2])) -> Intensity {
-        let light = map(Walked.shade(quarters), |quarter| quarter << QUARTER);
-        zip(self.sampler.at(place).reflected(light), Walked.shade(highlights), |reflected, highlight| reflected + highlight)
+    fn shade(&self, ((light, highlights), place): (([u32; 3], [u32; 3]), [u32; 2])) -> Intensity {
+        let reflected = self.sampler.at(place).reflected(map(light, whole));
+        zip(reflected, map(highlights, whole), |reflected, highlight| (reflected + highlight).clamp(0, i32::from(u16::MAX)))
     }
 }
 
