@@ -15,7 +15,7 @@ use microphong::{Stream, renderer};
 use microphong_compare::{UNDECIDED, level};
 use microphong_oracle::{Facet, Frame, Levels, MOST_OUTCOMES, Shade, chosen, decides, method, outcomes};
 use microphong_render::{
-    choices::{self, Chosen},
+    choices::{self, Chosen, Way},
     render::{self, Format, Style},
     shader::Shader,
 };
@@ -281,8 +281,16 @@ fn pixels(case: &Case, frame: &Frame, visible: &[Vec<u32>]) -> Option<Vec<Pixel>
         let errors = candidates
             .iter()
             .map(|&c| {
+                let facet = &frame.facets[c as usize];
                 let beside = |facet: &Facet| Some(shade(case, frame, facet, &ways)?(centre));
-                (c, error(frame, &frame.facets[c as usize], levels, (centre, shades[c as usize](centre)), beside) - rounding)
+                let mut error = error(frame, facet, levels, (centre, shades[c as usize](centre)), beside);
+                // In perspective, `auto` may interpolate on the screen: what that is off by counts in its budget.
+                let is_linear = ways.get(facet.id as usize).copied().flatten().is_some_and(|chosen| chosen.way == Way::Linear);
+                if error > UNDECIDED && is_linear && facet.shares != [1.0; 3] {
+                    let on_screen = Facet { shares: [1.0; 3], ..facet.clone() };
+                    error = beside(&on_screen).map_or(error, |exact| error.min(difference(frame, facet, levels, exact)));
+                }
+                (c, error - rounding)
             })
             .collect();
         let mut pixel = Pixel { centre, errors, is_undecidable: false };

@@ -156,7 +156,8 @@ impl Albedo {
 /// All light is coloured: methods that do not tell highlights apart show them in the colour of the surface.
 impl<V, S: IntensityShader<V>> IntensityShader<(V, [u32; 2])> for OnTexture<'_, S> {
     fn shade(&self, (value, place): (V, [u32; 2])) -> Intensity {
-        self.sampler.at(place).reflected(self.shader.shade(value))
+        // No more than full intensity, as without a texture.
+        self.sampler.at(place).reflected(map(self.shader.shade(value), |light| light.min(FULL << (INTENSITY - LEVEL))))
     }
 }
 
