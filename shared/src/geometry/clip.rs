@@ -8,12 +8,10 @@ use crate::{
     features::COLOURED,
     format::{HAVERSINE, INVERSE_SUM_LENGTH, UNIT},
     geometry::{lens::PLANES, projection::View},
-    lighting::albedo::IfColoured,
     math::{
         rsqrt::rsqrt_wide,
         vector::{add, dot, normalise, wide, zip},
     },
-    mesh::Attributes,
     stream::record::{Triangle, Vertex},
 };
 use core::array::from_fn;
@@ -21,6 +19,9 @@ use heapless::Vec;
 
 /// Largest number of corners of a triangle that five planes have cut.
 const CORNERS: usize = 3 + PLANES;
+
+/// What the colour of a surface depends on at a corner.
+pub(crate) type Attributes = [[i32; 3]; COLOURED];
 
 /// A corner of the cut polygon.
 #[derive(Clone, Copy, Debug)]
@@ -50,7 +51,7 @@ pub(crate) fn clip(view: &View, vertices: [&Vertex; 3]) -> Vec<Cut, CORNERS> {
 
 /// [`clip`], where the corners have these attributes.
 #[must_use]
-pub(crate) fn clip_painted(view: &View, vertices: [&Vertex; 3], attributes: IfColoured<[[i32; 3]; 3]>) -> Vec<Cut, CORNERS> {
+pub(crate) fn clip_painted(view: &View, vertices: [&Vertex; 3], attributes: [[[i32; 3]; 3]; COLOURED]) -> Vec<Cut, CORNERS> {
     let mut polygon = Vec::<Corner, CORNERS>::new();
     for (k, v) in vertices.into_iter().enumerate() {
         let attributes = attributes.map(|attributes| attributes.get(k).copied().unwrap_or_default());

@@ -31,6 +31,16 @@ pub struct Sampler<'f> {
     is_gray: bool,
 }
 
+/// The texture of a triangle.
+#[derive(Clone, Copy)]
+pub(crate) struct Textured<'f> {
+    pub(crate) sampler: &'f Sampler<'f>,
+    /// Where the corners lie in it.
+    pub(crate) places: [Place; 3],
+    /// Whether the camera is a perspective one.
+    pub(crate) in_perspective: bool,
+}
+
 impl<'f> Sampler<'f> {
     /// The texture of a mesh, and where its triangles lie in it. Pixel formats of greys take the luma of its colours.
     pub(crate) fn new(MeshTexture { palette, texels, size, corners }: MeshTexture<'f>, is_gray: bool) -> (Self, &'f [TextureCorners]) {

@@ -18,10 +18,7 @@ use crate::{
     setup::gradients::Gradients,
     stream::record::Triangle,
 };
-pub(crate) use {
-    painting::{Attributes, Painting},
-    pass::MeshPass,
-};
+pub(crate) use {painting::Painting, pass::MeshPass};
 
 /// A mesh in one frame, and the colours of its material in the pixel format `C`.
 pub(crate) struct Drawing<'f, C: Pixel> {

@@ -5,11 +5,11 @@
 
 use crate::{
     features::{COLOURED, TEXTURED},
+    geometry::clip::Attributes,
     lighting::{
         albedo::{Albedo, IfColoured},
-        sampler::{IfTextured, Place, Sampler},
+        sampler::{IfTextured, Place, Sampler, Textured},
     },
-    method::texture::Textured,
     raster::triangle::turn,
     stream::{
         MeshColours, Stream,
@@ -31,9 +31,6 @@ pub(crate) struct Paint {
     albedos: IfColoured<Option<[Albedo; 3]>>,
     places: IfTextured<Option<[Place; 3]>>,
 }
-
-/// What clipping interpolates of the colours of a corner.
-pub(crate) type Attributes = IfColoured<[i32; 3]>;
 
 impl<'f> Painting<'f> {
     /// The colours of `mesh`. Pixel formats of greys take their luma.

@@ -33,7 +33,7 @@ use crate::{
     lighting::{
         albedo::{Albedo, IfColoured},
         material_tables::MaterialTables,
-        sampler::IfTextured,
+        sampler::{IfTextured, Textured},
     },
     pixel::{Pixel, half_step, ramps::Ramps},
     raster::{
@@ -55,7 +55,6 @@ pub use crate::{
 use core::fmt;
 pub use facts::{Facts, VertexLight};
 pub(crate) use perspective::{LinearWay, Middles};
-use texture::Textured;
 // For the crate of the literature.
 #[doc(hidden)]
 pub use {

@@ -18,7 +18,7 @@ use crate::{
     },
     lighting::{
         albedo::{Albedo, Parts, SHARE},
-        sampler::{FINER, Place, Sampler},
+        sampler::{FINER, Sampler, Textured},
     },
     math::vector::{map, zip},
     method::{
@@ -29,16 +29,6 @@ use crate::{
     },
     raster::canvas::{Canvas, Shaded},
 };
-
-/// The texture of a triangle.
-#[derive(Clone, Copy)]
-pub(crate) struct Textured<'f> {
-    pub(crate) sampler: &'f Sampler<'f>,
-    /// Where the corners lie in it.
-    pub(crate) places: [Place; 3],
-    /// Whether the camera is a perspective one.
-    pub(crate) in_perspective: bool,
-}
 
 /// The place in a texture over a triangle.
 #[derive(Clone, Copy, Debug)]
