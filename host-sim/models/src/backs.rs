@@ -46,7 +46,7 @@ pub(crate) fn add(mesh: &mut Mesh, has_two_sides: impl Fn(Submesh) -> bool) -> u
         mesh.triangles.push([a, c, b]);
         mesh.submeshes.push(Submesh { is_back: true, ..mesh.submeshes[front] });
         if !mesh.colours.is_empty() {
-            let turned = |Coloured { palette, colours: [a, b, c] }| Coloured { palette, colours: [a, c, b] };
+            let turned = |Coloured { coat, corners: [a, b, c] }| Coloured { coat, corners: [a, c, b] };
             mesh.colours.push(mesh.colours[front].map(turned));
         }
     }

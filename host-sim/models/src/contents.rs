@@ -11,11 +11,13 @@ pub enum Colours {
     /// Triangles have colours at their corners.
     #[default]
     Corners,
+    /// Triangles have a texture where colours at their corners are far from it, and other triangles have these.
+    Texture,
 }
 
 impl Colours {
     /// All of them.
-    pub const ALL: [Self; 2] = [Self::None, Self::Corners];
+    pub const ALL: [Self; 3] = [Self::None, Self::Corners, Self::Texture];
 
     /// The name on the command line.
     #[must_use]
@@ -23,6 +25,7 @@ impl Colours {
         match self {
             Self::None => "none",
             Self::Corners => "corners",
+            Self::Texture => "texture",
         }
     }
 }

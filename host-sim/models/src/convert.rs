@@ -161,7 +161,7 @@ pub struct Converted {
     pub look: Look,
     /// What simplification did.
     pub simplified: Option<Simplified>,
-    /// The colours that triangles had at their corners before simplification.
+    /// The colours and textures that triangles had before simplification.
     pub painted: Painted,
     /// Number of triangles that were backs of others before simplification.
     pub backs: usize,

@@ -251,7 +251,7 @@ impl Reader<'_> {
             if self.colours == Colours::None && texture.is_some() {
                 self.scene.ignored.insert("textures");
             }
-            let texture = texture.filter(|_| self.colours == Colours::Corners).and_then(|info| self.texture(&info));
+            let texture = texture.filter(|_| self.colours != Colours::None).and_then(|info| self.texture(&info));
             self.scene.textures.push(texture);
             let has_texture = gloss.is_some_and(|gloss| gloss.specular_glossiness_texture().is_some())
                 || pbr.metallic_roughness_texture().is_some()

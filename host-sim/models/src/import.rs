@@ -3,6 +3,7 @@
 pub use crate::contents::Colours;
 use crate::{
     backs::{self, Sides},
+    coat::TextureSize,
     contents::Contents,
     faults::{COMPUTED_NORMAL, TURNED},
     fields::quoted,
@@ -38,7 +39,7 @@ pub struct Imported {
     pub faults: Vec<String>,
     /// Remarks on the file for the user, in sentences; those on wrong elements are among them.
     pub remarks: Vec<String>,
-    /// The colours that triangles have at their corners.
+    /// The colours and textures that triangles have.
     pub painted: Painted,
     /// Number of triangles that are backs of others.
     pub backs: usize,
@@ -60,6 +61,8 @@ pub struct Rules {
     pub allow_outside: bool,
     /// What becomes of the colours of textures and vertices.
     pub colours: Colours,
+    /// The largest width and height of textures.
+    pub texture_size: TextureSize,
     /// Which triangles have backs.
     pub sides: Sides,
 }
@@ -94,8 +97,9 @@ fn welded(path: &Path, bytes: &[u8], folder: &Folder, weld: Weld, rules: Rules) 
         contents(path, bytes, folder, rules.colours)?;
     let (mut mesh, sources, report) = mesh::weld_with_sources(&soup, weld).with_context(place)?;
     let painted = match rules.colours {
-        Colours::Corners => paint::paint(&mut mesh, sources, &soup, &mut materials, &textures),
         Colours::None => Painted::default(),
+        Colours::Corners => paint::paint(&mut mesh, sources, &soup, &mut materials, &textures, None),
+        Colours::Texture => paint::paint(&mut mesh, sources, &soup, &mut materials, &textures, Some(rules.texture_size)),
     };
     let has_two_sides = |submesh: Submesh| match rules.sides {
         Sides::OfFile => materials[submesh.material].as_ref().is_some_and(|material| material.two_sided),
@@ -103,9 +107,9 @@ fn welded(path: &Path, bytes: &[u8], folder: &Folder, weld: Weld, rules: Rules) 
         Sides::Two => true,
     };
     let backs = backs::add(&mut mesh, has_two_sides);
-    remarks.extend(painted.sentence());
+    remarks.extend(painted.sentences());
     remarks.extend(backs::sentence(backs, rules.sides));
-    if painted.triangles == 0 {
+    if !painted.has_any() {
         ignored.extend((!soup.colours.is_empty()).then_some("colours of vertices"));
         ignored.extend(textures.iter().any(Option::is_some).then_some("textures"));
         ignored.extend((!soup.places.is_empty()).then_some("texture coordinates"));
@@ -202,11 +206,11 @@ fn with_libraries(folder: &Folder, obj: Obj, colours: Colours) -> Result<Content
     let images = &mut Images::default();
     let named = || materials.iter().map(|material| material.as_ref()?.texture.as_ref());
     let textures = match colours {
-        Colours::Corners => named().map(|name| texture(name?, images, folder, &mut remarks)).collect(),
         Colours::None => {
             ignored.extend(named().any(|name| name.is_some()).then_some("textures"));
             Vec::new()
         }
+        Colours::Corners | Colours::Texture => named().map(|name| texture(name?, images, folder, &mut remarks)).collect(),
     };
     Ok(Contents { soup, objects, materials, textures, ignored, faults, remarks })
 }

@@ -4,6 +4,7 @@
 //! of its error is an estimate; the error that a stream has is measured here, between the rounded surfaces.
 
 use crate::{
+    coat::{Coat, Paint, texture_corners},
     convex::is_closed_convex,
     distance::{Corners, hausdorff},
     mesh::{Mesh, Rgb},
@@ -12,12 +13,12 @@ use crate::{
     quantise::{self, Part},
     records,
 };
-use anyhow::{Result, anyhow, bail};
+use anyhow::{Result, anyhow, bail, ensure};
 use embedded_graphics_core::geometry::Size;
 use meshoptimizer_rs::{Attributes, Positions, SimplifyOptions, SimplifySettings, Workspace, simplify_with_attributes};
 use microphong::{
     Stream,
-    format::GeometricError,
+    format::{GeometricError, TEXTURE},
     geometry::detail::stream_tolerance,
     stream::record::{self, Triangle, Vertex},
 };
@@ -28,8 +29,8 @@ use std::{collections::HashMap, iter, mem};
 pub struct Level {
     /// Their corners count from the part's first vertex.
     pub triangles: Vec<Triangle>,
-    /// For each triangle the colours of its corners as indices of the part's palette; empty if corners have none.
-    pub colours: Vec<[u8; 3]>,
+    /// What the corners of each triangle have of the part's palette or texture; empty if there is none.
+    pub colours: Vec<[Paint; 3]>,
     /// No point of either surface lies farther from the other; more than 0, rounded up.
     pub error: GeometricError,
     /// Closed and convex: front faces never hide one another.
@@ -43,6 +44,8 @@ const GAIN: f64 = 0.9;
 const NORMALS: f32 = 0.05;
 /// Weight of the difference of colours beside distances.
 const COLOURS: f32 = 0.05;
+/// Weight of the difference of places in a texture, of which 1 is its width, beside distances.
+const PLACES: f32 = 0.2;
 /// Colours of corners at a vertex that differ by more than this, of 255, have a border between them. Others become one colour when a mesh is simplified.
 const BORDER: u8 = 12;
 
@@ -99,7 +102,7 @@ fn fewest(part: &Part, most: usize, error: GeometricError, options: SimplifyOpti
         let coarse = simplified(part, target, options)?;
         let triangles = &coarse.triangles;
         let apart = hausdorff(&surface, &corners(&part.vertices, triangles), [0.25, 1.0].map(|share| share * f64::from(error)));
-        let apart = apart.filter(|_| !triangles.is_empty());
+        let apart = apart.filter(|_| !triangles.is_empty() && coarse.has_room());
         let Some(apart) = apart else {
             too_few = target;
             continue;
@@ -166,7 +169,12 @@ pub fn reduced(mesh: &Mesh, parts: &[Part], most: usize) -> Result<Vec<Part>> {
     let reduce = |(part, options): (&Part, SimplifyOptions)| {
         // Each part has its share, which may be less than it can be made of.
         let share = (part.triangles.len() as u64 * most as u64 / before as u64) as usize;
-        let Coarse { triangles, colours } = simplified(part, share, options)?;
+        let coarse = simplified(part, share, options)?;
+        ensure!(
+            coarse.has_room(),
+            "with {most} triangles a texture would repeat itself 16 times or more over one of them; give more, or leave textures out by --colours corners"
+        );
+        let Coarse { triangles, colours } = coarse;
         let mut part = Part { closed_convex: is_convex(mesh, part, &triangles), triangles, colours, ..part.clone() };
         drop_unused(&mut part);
         Ok(part)
@@ -174,7 +182,7 @@ pub fn reduced(mesh: &Mesh, parts: &[Part], most: usize) -> Result<Vec<Part>> {
     let parts = parts.iter().zip(borders).map(reduce).collect::<Result<Vec<_>>>()?;
     let after = count(&parts);
     if after > most {
-        let has_colours = parts.iter().any(|part| !part.palette.is_empty());
+        let has_colours = parts.iter().any(|part| part.coat.is_some());
         let borders = match (parts.len() > 1, has_colours) {
             (true, true) => {
                 ", because borders between colours, materials and objects stay as they are; give more, or one --colour and --merge"
@@ -221,8 +229,18 @@ pub fn drawn<'a>(stream: &Stream<'a>, size: Size) -> impl DoubleEndedIterator<It
 /// Triangles on vertices of a part.
 struct Coarse {
     triangles: Vec<Triangle>,
-    /// The colours of their corners; empty if corners have none.
-    colours: Vec<[u8; 3]>,
+    /// What their corners have of a palette or texture; empty if there is none.
+    colours: Vec<[Paint; 3]>,
+}
+
+impl Coarse {
+    /// Whether a stream has room for the places of all corners.
+    fn has_room(&self) -> bool {
+        self.colours.iter().all(|&corners| match corners {
+            [Paint::Place(a), Paint::Place(b), Paint::Place(c)] => texture_corners([a, b, c]).is_some(),
+            _ => true,
+        })
+    }
 }
 
 /// About `target` triangles on vertices of `part`.
@@ -232,15 +250,21 @@ fn simplified(part: &Part, target: usize, options: SimplifyOptions) -> Result<Co
     let vertices = || wedges.iter().map(|wedge| &part.vertices[usize::from(wedge.vertex)]);
     let positions: Vec<[f32; 3]> = vertices().map(|vertex| records::position(vertex).map(f32::from)).collect();
     let normals = vertices().map(|vertex| records::normal(vertex).map(f32::from));
-    let colours = || wedges.iter().map(|wedge| part.palette[usize::from(wedge.colour)].map(|c| f32::from(c) / 255.0));
-    let (attributes, weights): (Vec<f32>, _) = if part.palette.is_empty() {
-        (normals.flatten().collect(), vec![NORMALS; 3])
-    } else {
-        (
-            normals.zip(colours()).flat_map(|(normal, colour)| normal.into_iter().chain(colour)).collect(),
-            [[NORMALS; 3], [COLOURS; 3]].concat(),
-        )
-    };
+    let mut weights = vec![NORMALS; 3];
+    weights.extend_from_slice(match part.coat {
+        None => &[],
+        Some(Coat::Palette(_)) => &[COLOURS; 3],
+        Some(Coat::Texture(_)) => &[PLACES; 2],
+    });
+    let mut attributes: Vec<f32> = Vec::with_capacity(weights.len() * wedges.len());
+    for (normal, wedge) in normals.zip(&wedges) {
+        attributes.extend(normal);
+        match wedge.paint {
+            None => {}
+            Some(Paint::Colour(colour)) => attributes.extend(part.palette()[usize::from(colour)].map(|c| f32::from(c) / 255.0)),
+            Some(Paint::Place(place)) => attributes.extend(place.map(|c| c as f32 / (1 << TEXTURE) as f32)),
+        }
+    }
     let positions = Positions::from_packed(&positions);
     let attributes = Attributes::from_interleaved(&attributes, wedges.len(), weights.len(), weights.len(), 0).map_err(refused)?;
     // The error is one that no mesh has: the number of triangles decides.
@@ -251,22 +275,22 @@ fn simplified(part: &Part, target: usize, options: SimplifyOptions) -> Result<Co
         let corners = corners.map(|corner| wedges[corner as usize]);
         let Some(triangle) = quantise::record(&part.vertices, corners.map(|wedge| wedge.vertex)) else { continue };
         coarse.triangles.push(triangle);
-        if !part.palette.is_empty() {
-            coarse.colours.push(corners.map(|wedge| wedge.colour));
+        if let [Some(a), Some(b), Some(c)] = corners.map(|wedge| wedge.paint) {
+            coarse.colours.push([a, b, c]);
         }
     }
     Ok(coarse)
 }
 
-/// A vertex, as the triangles around it that have one colour there see it.
+/// A vertex, as the triangles around it that have one colour or one place in the texture there see it.
 #[derive(Clone, Copy)]
 struct Wedge {
     vertex: u16,
-    /// The colour as an index of the palette; 0 if corners have none.
-    colour: u8,
+    /// The colour or place, if corners have one.
+    paint: Option<Paint>,
 }
 
-/// The vertices of a part for each of their colours. The simplifier keeps borders between wedges of one vertex.
+/// The vertices of a part for each of their colours and places in the texture. The simplifier keeps borders between wedges of one vertex.
 struct Wedges {
     wedges: Vec<Wedge>,
     /// The wedge at each corner of all triangles.
@@ -276,50 +300,64 @@ struct Wedges {
 impl Wedges {
     fn of(part: &Part) -> Self {
         let vertices = part.triangles.iter().flat_map(|triangle| triangle.corners);
-        if part.palette.is_empty() {
-            let wedges = (0..part.vertices.len() as u16).map(|vertex| Wedge { vertex, colour: 0 }).collect();
+        if part.coat.is_none() {
+            let wedges = (0..part.vertices.len() as u16).map(|vertex| Wedge { vertex, paint: None }).collect();
             return Self { wedges, corners: vertices.map(u32::from).collect() };
         }
         let mut groups: Vec<Vec<Group>> = vec![Vec::new(); part.vertices.len()];
         let corners: Vec<(u16, usize)> = vertices
             .zip(part.colours.iter().flatten())
-            .map(|(vertex, &colour)| {
-                let (groups, colour) = (&mut groups[usize::from(vertex)], part.palette[usize::from(colour)]);
-                let known = groups.iter().position(|group| distance(group.first, colour) <= BORDER);
+            .map(|(vertex, &paint)| {
+                let groups = &mut groups[usize::from(vertex)];
+                let known = groups.iter().position(|group| group.has_no_border(paint, part.palette()));
                 let number = known.unwrap_or_else(|| {
-                    groups.push(Group { first: colour, sum: [0; 3], corners: 0 });
+                    groups.push(Group { first: paint, sum: [0; 3], corners: 0 });
                     groups.len() - 1
                 });
-                groups[number].add(colour);
+                groups[number].add(paint, part.palette());
                 (vertex, number)
             })
             .collect();
         let first = groups.iter().scan(0, |count, groups| Some(mem::replace(count, *count + groups.len() as u32))).collect::<Vec<_>>();
-        let colour = |group: &Group| nearest(&part.palette, group.mean());
         let wedges = (0..).zip(&groups).flat_map(|(vertex, groups)| groups.iter().map(move |group| (vertex, group)));
         Self {
-            wedges: wedges.map(|(vertex, group)| Wedge { vertex, colour: colour(group) }).collect(),
+            wedges: wedges.map(|(vertex, group)| Wedge { vertex, paint: Some(group.mean(part.palette())) }).collect(),
             corners: corners.into_iter().map(|(vertex, number)| first[usize::from(vertex)] + number as u32).collect(),
         }
     }
 }
 
-/// Colours of corners at a vertex without a border between them.
+/// Colours of corners at a vertex without a border between them, or one place in a texture.
 #[derive(Clone)]
 struct Group {
-    first: Rgb,
+    first: Paint,
+    /// The sum of the colours.
     sum: [u32; 3],
     corners: u32,
 }
 
 impl Group {
-    fn add(&mut self, colour: Rgb) {
-        self.corners += 1;
-        self.sum.iter_mut().zip(colour).for_each(|(sum, c)| *sum += u32::from(c));
+    /// Whether colours change little, or the texture continues, between the group and another corner at the vertex.
+    fn has_no_border(&self, paint: Paint, palette: &[Rgb]) -> bool {
+        match (self.first, paint) {
+            (Paint::Colour(one), Paint::Colour(other)) => distance(palette[usize::from(one)], palette[usize::from(other)]) <= BORDER,
+            (one, other) => one == other,
+        }
     }
 
-    fn mean(&self) -> Rgb {
-        self.sum.map(|sum| ((sum + self.corners / 2) / self.corners) as u8)
+    fn add(&mut self, paint: Paint, palette: &[Rgb]) {
+        if let Paint::Colour(colour) = paint {
+            self.corners += 1;
+            self.sum.iter_mut().zip(palette[usize::from(colour)]).for_each(|(sum, c)| *sum += u32::from(c));
+        }
+    }
+
+    /// The colour that is nearest to the mean, or the place.
+    fn mean(&self, palette: &[Rgb]) -> Paint {
+        match self.first {
+            Paint::Colour(_) => Paint::Colour(nearest(palette, self.sum.map(|sum| ((sum + self.corners / 2) / self.corners) as u8))),
+            place @ Paint::Place(_) => place,
+        }
     }
 }
 

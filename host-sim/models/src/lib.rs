@@ -2,6 +2,7 @@
 
 pub mod backs;
 pub mod bytes;
+pub mod coat;
 pub mod contents;
 pub mod convert;
 pub mod convex;

@@ -2,6 +2,8 @@
 
 use crate::{
     bytes::StreamBytes,
+    coat::{Coat, Paint, Texels, texture_corners},
+    mesh::Rgb,
     number::{above, nearest},
     quantise::Part,
     records,
@@ -18,13 +20,14 @@ use microphong::{
     stream::{
         MAX_GAIN, MAX_NAME,
         record::{
-            CLOSED_CONVEX, Camera, Colour, CornerColours, DIRECTIONAL, EYE_SPACE, HAS_COLOURS, Header, Instance, Key, Label, Light, MAGIC,
-            Material, Mesh, OBJECT_SPACE, ORTHOGRAPHIC, OWN_MATERIALS, PALETTE, PERSPECTIVE, POINT, SKY, Track, VERSION,
+            CLOSED_CONVEX, Camera, Colour, CornerColours, DIRECTIONAL, EYE_SPACE, HAS_COLOURS, HAS_TEXTURE, Header, Instance, Key, Label,
+            Light, MAGIC, Material, Mesh, OBJECT_SPACE, ORTHOGRAPHIC, OWN_MATERIALS, PALETTE, PERSPECTIVE, POINT, SKY, Texture,
+            TextureCorners, Track, VERSION,
         },
     },
 };
 use microphong_render::shader::Shader;
-use std::{collections::HashMap, iter, ops::RangeInclusive};
+use std::{collections::HashMap, ops::RangeInclusive, sync::Arc};
 use zerocopy::{FromZeros, IntoBytes};
 
 /// Reflectances of a surface for each channel, where 1 reflects all light.
@@ -259,15 +262,20 @@ impl Look {
             ambient: self.ambient.map(gain).map(Gain::to_bits),
             ..self.seen(parts)
         };
-        let (palettes, colours) = palettes(parts)?;
-        let corner_colours = corner_colours(parts);
+        let mut coats = Coats::default();
+        let numbers = parts.iter().map(|part| part.coat.as_ref().map_or(Ok((0, 0)), |coat| coats.add(coat))).collect::<Result<Vec<_>>>()?;
+        let Coats { colours, textures, mut texels, .. } = coats;
+        texels.resize(texels.len().next_multiple_of(4), 0);
+        let (corner_colours, texture_corners) = (corner_colours(parts), places(parts)?);
         (header.colours, header.corner_colours) = (colours.len() as u16, corner_colours.len() as u32);
+        (header.textures, header.texture_corners, header.texels) =
+            (textures.len() as u16, texture_corners.len() as u32, texels.len() as u32);
         let names = self.names(parts)?;
         let length = stream::length(&header).and_then(|length| length.checked_add(names.len() as u32));
         header.length = length.context("the stream would be larger than 4 GiB; simplify the mesh")?;
         let mut bytes = header.as_bytes().to_vec();
         let (mut first_vertex, mut first_triangle) = (0, 0);
-        for (part, &palette) in parts.iter().zip(&palettes) {
+        for (part, &(coat, palette)) in parts.iter().zip(&numbers) {
             let vertices = u16::try_from(part.vertices.len()).context("too many vertices for one mesh; simplify the mesh")?;
             for (triangles, error, closed_convex) in part.levels() {
                 let mesh = Mesh {
@@ -277,7 +285,7 @@ impl Look {
                     vertices,
                     material: part.material,
                     error: error.to_bits(),
-                    flags: if closed_convex { CLOSED_CONVEX } else { 0 } | if part.palette.is_empty() { 0 } else { HAS_COLOURS },
+                    flags: if closed_convex { CLOSED_CONVEX } else { 0 } | coat,
                     palette,
                 };
                 first_triangle += mesh.triangles;
@@ -301,6 +309,9 @@ impl Look {
         levels().for_each(|(triangles, ..)| bytes.extend_from_slice(triangles.as_bytes()));
         bytes.extend_from_slice(corner_colours.as_bytes());
         bytes.extend_from_slice(colours.as_bytes());
+        bytes.extend_from_slice(textures.as_bytes());
+        bytes.extend_from_slice(texture_corners.as_bytes());
+        bytes.extend_from_slice(&texels);
         bytes.extend_from_slice(self.labels.as_bytes());
         bytes.extend_from_slice(&names);
         stream::seal(&mut bytes);
@@ -325,23 +336,52 @@ impl Look {
     }
 }
 
-/// The number of each part's palette, in units of [`PALETTE`] colours, and the colours of all palettes. Equal palettes are written once.
-fn palettes(parts: &[Part]) -> Result<(Vec<u8>, Vec<Colour>)> {
-    let (mut colours, mut known) = (Vec::new(), HashMap::new());
-    let mut number = |part: &Part| -> Result<u8> {
-        if part.palette.is_empty() {
-            return Ok(0);
+/// The palettes and textures of a stream. Equal ones are written once.
+#[derive(Default)]
+struct Coats {
+    colours: Vec<Colour>,
+    textures: Vec<Texture>,
+    texels: Vec<u8>,
+    /// The number of each palette, in units of [`PALETTE`] colours.
+    palettes: HashMap<Vec<Rgb>, u8>,
+    /// The number of each texture.
+    known: HashMap<Arc<Texels>, u8>,
+}
+
+impl Coats {
+    /// Adds a palette or texture. Returns the flag of meshes with it, and its number.
+    fn add(&mut self, coat: &Coat) -> Result<(u8, u8)> {
+        match coat {
+            Coat::Palette(palette) => Ok((HAS_COLOURS, self.palette(palette)?)),
+            Coat::Texture(texels) => Ok((HAS_TEXTURE, self.texture(texels)?)),
         }
-        let next = colours.len().div_ceil(PALETTE);
-        let number = *known.entry(part.palette.clone()).or_insert(next);
-        if number == next {
-            colours.resize(next * PALETTE, BLACK);
-            colours.extend(part.palette.iter().map(|&channels| Colour { channels, unused: 0 }));
+    }
+
+    fn palette(&mut self, palette: &[Rgb]) -> Result<u8> {
+        if let Some(&known) = self.palettes.get(palette) {
+            return Ok(known);
         }
-        u8::try_from(number).context("too many colours for one stream; give some meshes one colour, or leave colours out")
-    };
-    let numbers = parts.iter().map(&mut number).collect::<Result<_>>()?;
-    Ok((numbers, colours))
+        let next = self.colours.len().div_ceil(PALETTE);
+        let number = u8::try_from(next)
+            .context("too many colours for one stream; give some meshes one colour, or leave colours out by --colours none")?;
+        self.colours.resize(next * PALETTE, BLACK);
+        self.colours.extend(palette.iter().map(|&channels| Colour { channels, unused: 0 }));
+        self.palettes.insert(palette.to_vec(), number);
+        Ok(number)
+    }
+
+    fn texture(&mut self, texels: &Arc<Texels>) -> Result<u8> {
+        if let Some(&known) = self.known.get(texels) {
+            return Ok(known);
+        }
+        let palette = self.palette(&texels.palette)?;
+        let number = u8::try_from(self.textures.len())
+            .context("too many textures for one stream; join some in one image, or leave textures out by --colours corners")?;
+        self.textures.push(Texture { first_texel: self.texels.len() as u32, size: texels.size, palette, unused: 0 });
+        self.texels.extend_from_slice(&texels.indices);
+        self.known.insert(Arc::clone(texels), number);
+        Ok(number)
+    }
 }
 
 /// What fills a palette up.
@@ -349,21 +389,36 @@ const BLACK: Colour = Colour { channels: [0; 3], unused: 0 };
 
 /// The colours at the corners of all triangles, up to the last one that has some.
 fn corner_colours(parts: &[Part]) -> Vec<CornerColours> {
-    let last = parts.iter().rposition(|part| !part.palette.is_empty());
+    let has_corners = |part: &Part| matches!(part.coat, Some(Coat::Palette(_)));
+    let last = parts.iter().rposition(has_corners);
     let mut corners = Vec::new();
     for part in parts.iter().take(last.map_or(0, |last| last + 1)) {
-        let colour = |index: u8| Colour { channels: part.palette[usize::from(index)], unused: 0 };
-        let levels =
-            iter::once((&part.colours, &part.triangles)).chain(part.coarser.iter().map(|level| (&level.colours, &level.triangles)));
-        for (colours, triangles) in levels {
-            if part.palette.is_empty() {
-                corners.extend(triangles.iter().map(|_| CornerColours { colours: [0; 3], range: 0 }));
-            } else {
-                corners.extend(colours.iter().map(|&colours| CornerColours::new(colours, colours.map(colour))));
-            }
+        let colour = |index: u8| Colour { channels: part.palette()[usize::from(index)], unused: 0 };
+        let record = |paints: [Paint; 3]| match paints {
+            [Paint::Colour(a), Paint::Colour(b), Paint::Colour(c)] => CornerColours::new([a, b, c], [a, b, c].map(colour)),
+            _ => NO_COLOURS,
+        };
+        if has_corners(part) {
+            corners.extend(part.colours().map(record));
+        } else {
+            corners.extend(part.levels().flat_map(|(triangles, ..)| triangles).map(|_| NO_COLOURS));
         }
     }
     corners
+}
+
+/// The record of a triangle without colours at its corners.
+const NO_COLOURS: CornerColours = CornerColours { colours: [0; 3], range: 0 };
+
+/// The places of all triangles that have a texture.
+fn places(parts: &[Part]) -> Result<Vec<TextureCorners>> {
+    let record = |paints: [Paint; 3]| match paints {
+        [Paint::Place(a), Paint::Place(b), Paint::Place(c)] => {
+            Some(texture_corners([a, b, c]).context("a texture repeats itself 16 times or more over a triangle; use --colours corners"))
+        }
+        _ => None,
+    };
+    parts.iter().flat_map(Part::colours).filter_map(record).collect()
 }
 
 /// Radius of the ball about the origin that holds all vertices, rounded up.

@@ -1,6 +1,7 @@
 //! Polygon soup to a welded mesh of triangles.
 
 use crate::{
+    coat::{Coat, Paint},
     mend::{self, Winding},
     polygon::{WELD, cut, newell},
     vector::{V3, add, cross, dot, length, scale, sub, unit},
@@ -87,22 +88,22 @@ pub struct Mesh {
     pub triangles: Vec<[usize; 3]>,
     /// Object and material of each triangle. If this is empty, all triangles belong to the first object and material.
     pub submeshes: Vec<Submesh>,
-    /// Colours at the corners of each triangle, where it has some. If this is empty, no triangle has any.
+    /// What colours each triangle, where something does. If this is empty, no triangle is coloured.
     pub colours: Vec<Option<Coloured>>,
-    /// The colours by which `colours` counts.
-    pub palettes: Vec<Vec<Rgb>>,
+    /// The palettes and textures by which `colours` counts.
+    pub coats: Vec<Coat>,
 }
 
 /// A colour of sRGB with 8 bits a channel.
 pub type Rgb = [u8; 3];
 
-/// The colours at the corners of a triangle.
+/// What colours a triangle.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct Coloured {
-    /// Number of the palette.
-    pub palette: u16,
-    /// The colour of each corner as an index of the palette.
-    pub colours: [u8; 3],
+    /// Number of the palette or texture.
+    pub coat: u16,
+    /// The colour of each corner, or its place.
+    pub corners: [Paint; 3],
 }
 
 impl Mesh {
@@ -112,7 +113,7 @@ impl Mesh {
         self.submeshes.get(triangle).copied().unwrap_or_default()
     }
 
-    /// The colours at the corners of a triangle, if it has some.
+    /// What colours a triangle, if something does.
     #[must_use]
     pub fn coloured(&self, triangle: usize) -> Option<Coloured> {
         self.colours.get(triangle).copied().flatten()
@@ -133,11 +134,11 @@ impl Mesh {
         self.submeshes.iter_mut().for_each(|submesh| submesh.object = 0);
     }
 
-    /// Gives all objects one material, and removes the colours of corners.
+    /// Gives all objects one material, and removes the colours of triangles.
     pub fn merge_materials(&mut self) {
         self.submeshes.iter_mut().for_each(|submesh| submesh.material = 0);
         self.colours.clear();
-        self.palettes.clear();
+        self.coats.clear();
     }
 }
 
@@ -552,7 +553,7 @@ fn drop_unused(mesh: &mut Mesh) {
     let mut kept = Mesh {
         submeshes: mem::take(&mut mesh.submeshes),
         colours: mem::take(&mut mesh.colours),
-        palettes: mem::take(&mut mesh.palettes),
+        coats: mem::take(&mut mesh.coats),
         ..Mesh::default()
     };
     for triangle in &mesh.triangles {

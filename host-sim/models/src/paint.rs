@@ -1,141 +1,226 @@
-//! Colours at the corners of triangles, for the colours that a file has in textures and at its vertices.
+//! Colours of triangles, for the colours that a file has in textures and at its vertices.
 //!
-//! A stream has no textures. It has colours at the corners of triangles, and the colour is linear between them. Most models of few triangles have textures
-//! that are palettes: each face lies in a patch of one colour, or in a gradient, and colours at the corners come very close to that. The colours of a
-//! triangle with a texture are those of least squared distance at many of its points.
+//! Triangles of a stream have colours at their corners, and the colour is linear between them. Most models of few triangles have textures that are palettes:
+//! each face lies in a patch of one colour, or in a gradient, and colours at the corners come very close to that. The colours of a triangle with a texture
+//! are those of least squared distance at many of its points. Where they are far from too much of a texture, triangles can have the texture itself.
 
 mod facet;
 mod fit;
 mod palette;
+mod report;
 mod split;
+mod textures;
 mod unite;
 
 use crate::{
+    coat::{Coat, Paint, TextureSize},
     mesh::{Coloured, Mesh, Soup, Source},
     mtl::Material,
-    number::grouped,
     texture::Texture,
-    vector::V3,
+    vector::{V3, cross, length, sub},
 };
-use facet::Facets;
+use facet::{Facet, Facets};
 use fit::{Apart, FAR, Fit, Fitting};
-use palette::Colours;
 pub(crate) use palette::distance;
-use serde::Serialize;
+use palette::{BLOCKS, Colours};
+pub use report::{Painted, Textured};
 use split::Piece;
 use std::collections::HashMap;
+use textures::Textures;
 use unite::united;
 
 /// How often neighbours of triangles that are split are looked at anew.
 const SPLITS: usize = 3;
-
-/// The colours of corners that a mesh has by its file, and how far they are from those of the file.
-#[derive(Clone, Copy, Debug, Default, PartialEq, Serialize)]
-pub struct Painted {
-    /// Number of colours of all palettes.
-    pub colours: usize,
-    /// Number of palettes.
-    pub palettes: usize,
-    /// Number of triangles that have colours at their corners.
-    pub triangles: usize,
-    /// Number of them that have one colour.
-    pub of_one_colour: usize,
-    /// Number of triangles that were split at the middles of their edges, because their colours were far.
-    pub split: usize,
-    /// Number of triangles of which a point is farther than 12 of 255 from its colour in the file.
-    pub far: usize,
-    /// Root of the mean squared distance of all channels at all points, in 255ths.
-    pub rms: f64,
-    /// Number of materials that are made for triangles with colours.
-    pub materials: usize,
-}
-
-impl Painted {
-    /// A sentence for the user; `None` if no triangle has colours.
-    pub(crate) fn sentence(&self) -> Option<String> {
-        let Self { colours, palettes, triangles, split, far, rms, .. } = *self;
-        let has = if triangles == 1 { "1 triangle has" } else { &*format!("{} triangles have", grouped(triangles)) };
-        let colours = if colours == 1 { "1 colour".to_owned() } else { format!("{} colours", grouped(colours)) };
-        let palettes = if palettes < 2 { String::new() } else { format!(" in {palettes} palettes") };
-        let split = match split {
-            0 => String::new(),
-            1 => ", 1 triangle was split for it".to_owned(),
-            several => format!(", {} triangles were split for it", grouped(several)),
-        };
-        let distance = match far {
-            0 => "none is farther than 12 of 255 from its texture or colours".to_owned(),
-            1 => "1 is farther than 12 of 255 from its texture or colours".to_owned(),
-            several => format!("{} are farther than 12 of 255 from their texture or colours", grouped(several)),
-        };
-        (triangles > 0).then(|| {
-            format!("{has} {colours} of textures and vertices at the corners{palettes}{split}: {distance}, the root of the mean square is {rms:.1}")
-        })
-    }
-}
+/// The share of the area of a material that may be far from its texture; where more is, colours at corners do not give the texture.
+const LOST: f64 = 0.05;
 
 /// Gives the triangles of a mesh the colours of the soup that it was made of. `sources` says where the soup has them, and `textures` are those of the
-/// materials. Triangles may be split.
+/// materials. Triangles may be split. If there is a size for textures, materials whose texture is lost by colours at corners have it.
 pub(crate) fn paint(
     mesh: &mut Mesh,
     sources: Vec<[Source; 3]>,
     soup: &Soup,
     materials: &mut Vec<Option<Material>>,
     textures: &[Option<Texture>],
+    size: Option<TextureSize>,
 ) -> Painted {
     if sources.is_empty() || soup.colours.is_empty() && textures.iter().all(Option::is_none) {
         return Painted::default();
     }
     let fitting = Fitting::new();
-    let mut facets = Facets { soup, textures, sources, parts: HashMap::new() };
-    let mut fits: Vec<Option<Fit>> = (0..mesh.triangles.len()).map(|triangle| Some(fitting.fit(&facets.of(mesh, triangle)?))).collect();
-    if fits.iter().all(Option::is_none) {
-        return Painted::default();
+    let facets = Facets { soup, textures, sources, parts: HashMap::new() };
+    let mut painting = Painting::at_corners(mesh, &facets, &fitting, (BLOCKS, &|_| false));
+    let areas = painting.areas(materials.len());
+    let is_lost: Vec<bool> = areas.iter().map(Area::is_lost).collect();
+    let textured = size.filter(|_| is_lost.contains(&true)).map(|size| {
+        let takes = |facet: Facet<'_>| facet.is_white && facet.places().is_some();
+        let takes = |triangle: usize| is_lost[mesh.submesh(triangle).material] && facets.of(mesh, triangle).is_some_and(takes);
+        let takes: Vec<bool> = (0..mesh.triangles.len()).map(takes).collect();
+        let textures = Textures::of(mesh, &facets, &takes, size);
+        let blocks = BLOCKS.saturating_sub(textures.blocks());
+        painting = Painting::at_corners(mesh, &facets, &fitting, (blocks, &|triangle| takes[triangle]));
+        painting.put_on(&textures, &fitting, &is_lost)
+    });
+    let all = areas.into_iter().filter(Area::is_lost).fold(Area::default(), |sum, area| sum.with(area));
+    let painted = Painted {
+        lost_materials: is_lost.iter().filter(|is_lost| **is_lost).count(),
+        lost_area: all.share(),
+        textures: textured,
+        ..painting.report()
+    };
+    *mesh = painting.mesh;
+    Painted { materials: with_materials(mesh, materials), ..painted }
+}
+
+/// An area, and how much of it is far from its texture.
+#[derive(Clone, Copy, Default)]
+struct Area {
+    all: f64,
+    lost: f64,
+}
+
+impl Area {
+    /// The area of a triangle.
+    fn of(mesh: &Mesh, triangle: usize, apart: &Apart) -> Self {
+        let [a, b, c] = mesh.triangles[triangle].map(|vertex| mesh.positions[vertex]);
+        let all = length(cross(sub(b, a), sub(c, a)));
+        Self { all, lost: apart.lost * all }
     }
-    let split = split_far(mesh, &mut facets, &mut fits, &fitting);
-    let mut is_exact = vec![false; mesh.triangles.len()];
-    let mut apart = Vec::new();
-    // Colours that are united become far here and there: these triangles keep their own.
-    for _ in 0..2 {
-        let colours = united(mesh, &fits, &is_exact);
-        let material = |triangle| mesh.submesh(triangle).material;
-        let reduced = Colours { triangles: &colours, is_exact: &is_exact, material: &material }.reduced();
-        (mesh.palettes, mesh.colours) = (reduced.palettes, reduced.triangles);
-        apart = fits
-            .iter()
-            .enumerate()
-            .map(|(triangle, fit)| Some(fitting.apart(&facets.of(mesh, triangle)?, fit.as_ref()?, &corners_of(mesh, triangle)?)))
-            .collect();
-        let mut has_new = false;
-        for ((fit, apart), is_exact) in fits.iter().zip(&apart).zip(&mut is_exact) {
-            let (Some(fit), Some(apart)) = (fit, apart) else { continue };
-            let apart: &Apart = apart;
-            *is_exact |= apart.largest > FAR && !fit.is_far;
-            has_new |= *is_exact;
+
+    fn with(self, other: Self) -> Self {
+        Self { all: self.all + other.all, lost: self.lost + other.lost }
+    }
+
+    /// The share that is far.
+    fn share(&self) -> f64 {
+        if self.lost > 0.0 { self.lost / self.all } else { 0.0 }
+    }
+
+    fn is_lost(&self) -> bool {
+        self.share() > LOST
+    }
+}
+
+/// A mesh with the colours that it has.
+struct Painting<'a> {
+    mesh: Mesh,
+    facets: Facets<'a>,
+    /// How far the colours at the corners of each triangle are from those of the file; `None` if it has none.
+    apart: Vec<Option<Apart>>,
+    /// Number of triangles that were split.
+    split: usize,
+}
+
+impl<'a> Painting<'a> {
+    /// Gives triangles colours at their corners, of so many blocks of colours, but for the triangles that are left out.
+    fn at_corners(mesh: &Mesh, facets: &Facets<'a>, fitting: &Fitting, (blocks, is_out): (usize, &dyn Fn(usize) -> bool)) -> Self {
+        let fit = |triangle| if is_out(triangle) { None } else { Some(fitting.fit(&facets.of(mesh, triangle)?)) };
+        let mut fits: Vec<Option<Fit>> = (0..mesh.triangles.len()).map(fit).collect();
+        let mut painting = Self { mesh: mesh.clone(), facets: facets.clone(), apart: Vec::new(), split: 0 };
+        let Self { mesh, facets, apart, split } = &mut painting;
+        *split = split_far(mesh, facets, &mut fits, fitting);
+        let mut is_exact = vec![false; mesh.triangles.len()];
+        // Colours that are united become far here and there: these triangles keep their own.
+        for _ in 0..2 {
+            let colours = united(mesh, &fits, &is_exact);
+            let material = |triangle| mesh.submesh(triangle).material;
+            let reduced = Colours { triangles: &colours, is_exact: &is_exact, material: &material, blocks }.reduced();
+            (mesh.coats, mesh.colours) = (reduced.palettes.into_iter().map(Coat::Palette).collect(), reduced.triangles);
+            *apart = fits
+                .iter()
+                .enumerate()
+                .map(|(triangle, fit)| Some(fitting.apart(&facets.of(mesh, triangle)?, fit.as_ref()?, &corners_of(mesh, triangle)?)))
+                .collect();
+            let mut has_new = false;
+            for ((fit, apart), is_exact) in fits.iter().zip(&*apart).zip(&mut is_exact) {
+                let (Some(fit), Some(apart)) = (fit, apart) else { continue };
+                *is_exact |= apart.largest > FAR && !fit.is_far;
+                has_new |= *is_exact;
+            }
+            if !has_new || !reduced.is_close {
+                break;
+            }
         }
-        if !has_new || !reduced.is_close {
-            break;
+        painting
+    }
+
+    /// The areas of the triangles of each material that have a texture in the file and colours at their corners.
+    fn areas(&self, materials: usize) -> Vec<Area> {
+        let mut areas = vec![Area::default(); materials];
+        for (triangle, apart) in self.apart.iter().enumerate() {
+            let has_texture = |_: &&Apart| self.facets.of(&self.mesh, triangle).is_some_and(|facet| facet.texture.is_some());
+            if let Some(apart) = apart.as_ref().filter(has_texture) {
+                let area = &mut areas[self.mesh.submesh(triangle).material];
+                *area = area.with(Area::of(&self.mesh, triangle, apart));
+            }
         }
+        areas
     }
-    let mut painted =
-        Painted { colours: mesh.palettes.iter().map(Vec::len).sum(), palettes: mesh.palettes.len(), split, ..Painted::default() };
-    let mut squares = 0.0;
-    for (triangle, apart) in apart.iter().enumerate() {
-        let Some(apart) = apart else { continue };
-        painted.triangles += 1;
-        painted.of_one_colour += usize::from(mesh.coloured(triangle).is_some_and(|Coloured { colours: [a, b, c], .. }| a == b && b == c));
-        painted.far += usize::from(apart.largest > FAR);
-        squares += apart.squares;
+
+    /// Gives the triangles without colours at their corners their textures.
+    fn put_on(&mut self, textures: &Textures, fitting: &Fitting, is_lost: &[bool]) -> Textured {
+        let mut textured = Textured { sizes: textures.sizes(), bytes: textures.bytes(), ..Textured::default() };
+        let first = self.mesh.coats.len();
+        self.mesh.coats.extend(textures.coats());
+        let (mut area, mut squares) = (Area::default(), 0.0);
+        for (triangle, has_corners) in self.apart.iter().map(Option::is_some).enumerate() {
+            let Some(facet) = self.facets.of(&self.mesh, triangle).filter(|facet| facet.texture.is_some()) else { continue };
+            if has_corners {
+                let is_lost = is_lost[self.mesh.submesh(triangle).material];
+                textured.repeating += usize::from(is_lost && facet.is_white);
+                textured.multiplied += usize::from(is_lost && !facet.is_white);
+                continue;
+            }
+            let found = facet.texture.and_then(|(image, _)| textures.find(image)).zip(facet.places());
+            let Some(((number, texels), places)) = found else { continue };
+            let at = |[p, q, r]: [f64; 3]| {
+                let [a, b, c] = places.map(|place| place.map(f64::from));
+                texels.at([0, 1].map(|axis| a[axis] * p + b[axis] * q + c[axis] * r)).map(|c| f64::from(c) / 255.0)
+            };
+            let apart = fitting.apart_by(&facet, at);
+            textured.triangles += 1;
+            area = area.with(Area::of(&self.mesh, triangle, &apart));
+            squares += apart.squares;
+            self.mesh.colours[triangle] = Some(Coloured { coat: (first + number) as u16, corners: places.map(Paint::Place) });
+        }
+        (textured.lost_area, textured.rms) = (area.share(), root(squares, textured.triangles));
+        textured
     }
-    painted.rms = 255.0 * (squares / painted.triangles as f64).sqrt();
-    painted.materials = with_materials(mesh, materials);
-    painted
+
+    /// The colours at corners, and how far they are.
+    fn report(&self) -> Painted {
+        let palettes = || self.mesh.coats.iter().filter(|coat| matches!(coat, Coat::Palette(_)));
+        let mut painted =
+            Painted { colours: palettes().map(|coat| coat.palette().len()).sum(), palettes: palettes().count(), ..Painted::default() };
+        painted.split = self.split;
+        let mut squares = 0.0;
+        for (triangle, apart) in self.apart.iter().enumerate() {
+            let Some(apart) = apart else { continue };
+            painted.triangles += 1;
+            painted.of_one_colour +=
+                usize::from(self.mesh.coloured(triangle).is_some_and(|Coloured { corners: [a, b, c], .. }| a == b && b == c));
+            painted.far += usize::from(apart.largest > FAR);
+            squares += apart.squares;
+        }
+        painted.rms = root(squares, painted.triangles);
+        painted
+    }
+}
+
+/// The root of the mean of the squares of some triangles, in 255ths.
+fn root(squares: f64, triangles: usize) -> f64 {
+    if triangles > 0 { 255.0 * (squares / triangles as f64).sqrt() } else { 0.0 }
 }
 
 /// The colours at the corners of a triangle, if it has some.
 fn corners_of(mesh: &Mesh, triangle: usize) -> Option<[V3; 3]> {
-    let Coloured { palette, colours } = mesh.coloured(triangle)?;
-    let palette = &mesh.palettes[usize::from(palette)];
-    Some(colours.map(|colour| palette[usize::from(colour)].map(|c| f64::from(c) / 255.0)))
+    let Coloured { coat, corners } = mesh.coloured(triangle)?;
+    let palette = mesh.coats[usize::from(coat)].palette();
+    let colour = |paint| match paint {
+        Paint::Colour(colour) => palette[usize::from(colour)].map(|c| f64::from(c) / 255.0),
+        Paint::Place(_) => [0.0; 3],
+    };
+    Some(corners.map(colour))
 }
 
 /// Gives triangles with colours a material whose own colour is that by which theirs is multiplied. Returns how many materials were made.
@@ -182,7 +267,10 @@ fn split_far(mesh: &mut Mesh, facets: &mut Facets<'_>, fits: &mut Vec<Option<Fit
     let mut rounds = 0..SPLITS;
     let (split, of_parts) = loop {
         let split = split::at_middles(mesh, &wanted);
-        let fit = |piece: &Piece| Some(fitting.fit(&facets.of(mesh, piece.of)?.part(&piece.part?)));
+        let fit = |piece: &Piece| {
+            fits[piece.of].as_ref()?;
+            Some(fitting.fit(&facets.of(mesh, piece.of)?.part(&piece.part?)))
+        };
         let of_parts: Vec<Option<Fit>> = split.pieces.iter().map(fit).collect();
         let far = split.pieces.iter().zip(&of_parts).filter(|(_, fit)| is_far(fit)).map(|(piece, _)| piece.of);
         let more: Vec<usize> = far.filter(|&triangle| !wanted[triangle] && helps(triangle)).collect();

@@ -1,6 +1,7 @@
 //! A welded mesh to the records of a stream.
 
 use crate::{
+    coat::{Coat, Paint},
     convex::is_closed_convex,
     levels::Level,
     mesh::{Coloured, Mesh, Rgb, Submesh},
@@ -38,10 +39,10 @@ pub struct Part {
     pub vertices: Vec<Vertex>,
     /// Their corners count from this part's first vertex.
     pub triangles: Vec<Triangle>,
-    /// The colours of all corners, at most 256; empty if corners have none.
-    pub palette: Vec<Rgb>,
-    /// For each triangle the colours of its corners as indices of the palette; empty if corners have none.
-    pub colours: Vec<[u8; 3]>,
+    /// The palette or texture of all triangles, if they have one.
+    pub coat: Option<Coat>,
+    /// What the corners of each triangle have of it; empty if there is none.
+    pub colours: Vec<[Paint; 3]>,
     /// Closed and convex: front faces never hide one another.
     pub closed_convex: bool,
     /// The vertex of the mesh that each of its vertices is a copy of.
@@ -51,15 +52,26 @@ pub struct Part {
 }
 
 impl Part {
+    /// The colours of its palette or texture; none if it has neither.
+    #[must_use]
+    pub fn palette(&self) -> &[Rgb] {
+        self.coat.as_ref().map_or(&[], Coat::palette)
+    }
+
     /// Triangles, error, and whether they are closed and convex, of all levels from fine to coarse.
     pub fn levels(&self) -> impl Iterator<Item = (&[Triangle], GeometricError, bool)> {
         let coarser = self.coarser.iter().map(|level| (&level.triangles[..], level.error, level.closed_convex));
         iter::once((&self.triangles[..], GeometricError::ZERO, self.closed_convex)).chain(coarser)
     }
+
+    /// What the corners of triangles have of the palette or texture, of all levels from fine to coarse.
+    pub(crate) fn colours(&self) -> impl Iterator<Item = [Paint; 3]> {
+        self.colours.iter().chain(self.coarser.iter().flat_map(|level| &level.colours)).copied()
+    }
 }
 
-/// Rounds a mesh to a stream's formats. Each submesh becomes a part, and several if it has more than 65,535 vertices or several palettes. Parts of an
-/// object follow one another.
+/// Rounds a mesh to a stream's formats. Each submesh becomes a part, and several if it has more than 65,535 vertices, or several palettes and textures.
+/// Parts of an object follow one another.
 ///
 /// Also counts triangles that had an area before the rounding, but not after it.
 #[must_use]
@@ -70,13 +82,13 @@ pub fn quantise(mesh: &Mesh) -> (Vec<Part>, usize) {
     let mut dropped = 0;
     let mut submeshes: BTreeMap<(Submesh, Option<u16>), Vec<usize>> = BTreeMap::new();
     for number in 0..mesh.triangles.len() {
-        let palette = mesh.coloured(number).map(|coloured| coloured.palette);
-        submeshes.entry((mesh.submesh(number), palette)).or_default().push(number);
+        let coat = mesh.coloured(number).map(|coloured| coloured.coat);
+        submeshes.entry((mesh.submesh(number), coat)).or_default().push(number);
     }
-    for ((Submesh { object, material, .. }, palette), triangles) in submeshes {
-        let palette = palette.map_or_else(Vec::new, |palette| mesh.palettes[usize::from(palette)].clone());
+    for ((Submesh { object, material, .. }, coat), triangles) in submeshes {
+        let coat = coat.map(|coat| mesh.coats[usize::from(coat)].clone());
         // A stream refuses more materials than its numbers can count.
-        let new = Part { object, material: material.try_into().unwrap_or(u16::MAX), palette, ..Part::default() };
+        let new = Part { object, material: material.try_into().unwrap_or(u16::MAX), coat, ..Part::default() };
         let mut part = new.clone();
         let mut index: HashMap<usize, u16> = HashMap::new();
         for number in triangles {
@@ -97,7 +109,7 @@ pub fn quantise(mesh: &Mesh) -> (Vec<Part>, usize) {
                 })
             });
             part.triangles.push(triangle);
-            part.colours.extend(mesh.coloured(number).map(|Coloured { colours, .. }| colours));
+            part.colours.extend(mesh.coloured(number).map(|Coloured { corners, .. }| corners));
         }
         parts.push(part);
     }

@@ -5,8 +5,9 @@
 use crate::{
     backs::Sides,
     bytes::StreamBytes,
+    coat::TextureSize,
     fields::{Field, Place, Table, quoted},
-    import::{self, Imported, Rules, surfaces},
+    import::{self, Colours, Imported, Rules, surfaces},
     look::{Cast, Cone, KEY, LIGHT_RANGE, Lamp, LampKind, Look, Member, Surface, Way},
     mesh::{CREASE, Mesh, Weld},
     mtl::Material,
@@ -204,9 +205,12 @@ impl Stock {
         let exponent = table.get("exponent", |field| field.integer(&(1..=MAX_EXPONENT.into())))?.unwrap_or(30) as u16;
         let crease = table.get("crease", |field| field.number(&FOLD))?.unwrap_or(CREASE);
         let sides = table.get("two-sided", Field::flag)?.map_or(Sides::OfFile, |two| if two { Sides::Two } else { Sides::One });
+        let colours = table.get("colours", colours)?.unwrap_or_default();
+        let texture_size = table.get("texture-size", texture_size)?.unwrap_or_default();
         table.end()?;
+        let rules = Rules { colours, texture_size, sides, ..Rules::default() };
         let (mut mesh, mut materials) = match (&file, &shape) {
-            (Some(file), None) => from_file(file, (crease, sides), folder, warn).with_context(|| table.place_of("file").to_string())?,
+            (Some(file), None) => from_file(file, (crease, rules), folder, warn).with_context(|| table.place_of("file").to_string())?,
             (None, Some(shape)) => (of_shape(shape, tube, &table.place_of("shape"))?, vec![None]),
             _ => return Err(table.place.error(format!("a mesh needs either `file`, or `shape` with {SHAPES}"))),
         };
@@ -248,6 +252,22 @@ impl Stock {
     }
 }
 
+/// What becomes of the colours of a file.
+fn colours(field: Field<'_>) -> Result<Colours> {
+    let place = field.place.clone();
+    let name = field.text()?;
+    let names = || Colours::ALL.map(Colours::name).join(", ");
+    let found = Colours::ALL.into_iter().find(|colours| colours.name() == name);
+    found.ok_or_else(|| place.error(format!("there is no \"{}\"; use one of {}", quoted(&name), names())))
+}
+
+/// The largest side of a texture.
+fn texture_size(field: Field<'_>) -> Result<TextureSize> {
+    let place = field.place.clone();
+    let texels = field.integer(&(0..=NUMBERS))?;
+    TextureSize::of(texels).ok_or_else(|| place.error(format!("{texels} is not possible; use one of {}", TextureSize::names())))
+}
+
 /// A name that a stream can keep.
 fn name(field: Field<'_>) -> Result<String> {
     let place = field.place.clone();
@@ -259,13 +279,12 @@ fn name(field: Field<'_>) -> Result<String> {
 
 fn from_file(
     file: &str,
-    (crease, sides): (f64, Sides),
+    (crease, rules): (f64, Rules),
     folder: Option<&Path>,
     warn: &dyn Fn(&str),
 ) -> Result<(Mesh, Vec<Option<Material>>)> {
     let folder = folder.context("there is no folder from which files could be read; use a shape")?;
-    let Imported { mesh, materials, faults, .. } =
-        import::file_by(&folder.join(file), Weld { crease, ..Weld::default() }, Rules { sides, ..Rules::default() })?;
+    let Imported { mesh, materials, faults, .. } = import::file_by(&folder.join(file), Weld { crease, ..Weld::default() }, rules)?;
     faults.iter().for_each(|fault| warn(&format!("{file}: {fault}")));
     Ok((mesh, materials))
 }

@@ -1,6 +1,9 @@
 //! Textures of materials, of which colours of faces are read.
 
-use crate::vector::V3;
+use crate::{
+    mesh::Rgb,
+    vector::{V3, add, scale},
+};
 use anyhow::{Context, Result, bail, ensure};
 use std::{collections::HashMap, io::Cursor, sync::Arc};
 
@@ -14,7 +17,7 @@ const TOO_MANY: &str = "the images of the model have more than 67,108,864 pixels
 pub(crate) struct Image {
     width: usize,
     /// Red, green and blue, row by row from the top.
-    pixels: Vec<[u8; 3]>,
+    pixels: Vec<Rgb>,
 }
 
 /// An image on a surface.
@@ -100,11 +103,57 @@ impl Image {
 impl Image {
     /// The colour of the pixel at a place, of which 1 is the whole width and height. The image repeats itself.
     pub(crate) fn at(&self, [x, y]: [f64; 2]) -> V3 {
-        let height = self.pixels.len() / self.width;
+        let [_, height] = self.size();
         let place = |coordinate: f64, size: usize| (((coordinate - coordinate.floor()) * size as f64) as usize).min(size - 1);
         let [r, g, b] = self.pixels[place(y, height) * self.width + place(x, self.width)];
         [f64::from(r) / 255.0, f64::from(g) / 255.0, f64::from(b) / 255.0]
     }
+
+    /// Width and height.
+    pub(crate) fn size(&self) -> [usize; 2] {
+        [self.width, self.pixels.len() / self.width]
+    }
+
+    /// The image in another width and height: each pixel has the mean colour of the area that it covers.
+    pub(crate) fn resampled(&self, [width, height]: [usize; 2]) -> Vec<Rgb> {
+        let own = self.size();
+        let [columns, rows] = [covered(own[0], width), covered(own[1], height)];
+        let mean = |row: &Cover, column: &Cover| {
+            let mut sum = [0.0; 3];
+            for (y, down) in row.iter() {
+                for (x, along) in column.iter() {
+                    sum = add(sum, scale(self.pixels[y * own[0] + x].map(f64::from), down * along));
+                }
+            }
+            sum.map(|c| c.round() as u8)
+        };
+        rows.iter().flat_map(|row| columns.iter().map(move |column| mean(row, column))).collect()
+    }
+}
+
+/// The pixels of a row that a new pixel covers.
+struct Cover {
+    first: usize,
+    /// What each of them has of the new pixel.
+    shares: Vec<f64>,
+}
+
+impl Cover {
+    fn iter(&self) -> impl Iterator<Item = (usize, f64)> {
+        (self.first..).zip(self.shares.iter().copied())
+    }
+}
+
+/// What each of `new` pixels covers of a row of `own` pixels.
+fn covered(own: usize, new: usize) -> Vec<Cover> {
+    // Old pixels have the length `new`, and new ones the length `own`.
+    let cover = |number: usize| {
+        let (from, to) = (number * own, (number + 1) * own);
+        let first = from / new;
+        let share = |pixel: usize| (to.min((pixel + 1) * new) - from.max(pixel * new)) as f64 / own as f64;
+        Cover { first, shares: (first..to.div_ceil(new)).map(share).collect() }
+    };
+    (0..new).map(cover).collect()
 }
 
 impl Texture {

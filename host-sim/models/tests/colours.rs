@@ -1,7 +1,11 @@
 //! Colours of textures and vertices become colours at the corners of triangles, also in simplified meshes.
 
+mod common;
+
+use common::{MTL, png, square, textured};
 use microphong::format::GeometricError;
 use microphong_models::{
+    coat::{Coat, Paint},
     import::{self, Colours, Imported, Rules},
     levels,
     look::{Look, Surface},
@@ -16,16 +20,6 @@ use serde_json::json;
 use std::{collections::HashMap, fmt::Write, fs};
 use tempfile::TempDir;
 
-/// A PNG of rows of pixels.
-fn png(rows: &[Vec<Rgb>]) -> Vec<u8> {
-    let mut bytes = Vec::new();
-    let mut encoder = png::Encoder::new(&mut bytes, rows[0].len() as u32, rows.len() as u32);
-    encoder.set_color(png::ColorType::Rgb);
-    encoder.set_depth(png::BitDepth::Eight);
-    encoder.write_header().unwrap().write_image_data(rows.concat().as_flattened()).unwrap();
-    bytes
-}
-
 fn read(name: &str, files: &[(&str, &[u8])]) -> Imported {
     let folder = TempDir::new().unwrap();
     for (name, bytes) in files {
@@ -34,33 +28,17 @@ fn read(name: &str, files: &[(&str, &[u8])]) -> Imported {
     import::file(&folder.path().join(name), Weld::default()).unwrap()
 }
 
-const MTL: &[u8] = b"newmtl paint\nKd 1 1 1\nmap_Kd a.png\n";
-
-/// An OBJ file of faces whose corners have a position and a place on the texture.
-fn textured(faces: &[Vec<(V3, [f64; 2])>]) -> String {
-    let mut text = String::from("mtllib a.mtl\nusemtl paint\n");
-    let mut corners = 0;
-    for face in faces {
-        for ([x, y, z], [u, v]) in face {
-            writeln!(text, "v {x} {y} {z}\nvt {u} {v}").unwrap();
-        }
-        let numbers: String = (1..=face.len()).map(|k| format!(" {0}/{0}", corners + k)).collect();
-        writeln!(text, "f{numbers}").unwrap();
-        corners += face.len();
-    }
-    text
-}
-
-/// A face of which two axes are those of the texture.
-fn square() -> Vec<(V3, [f64; 2])> {
-    [[0.0, 0.0], [1.0, 0.0], [1.0, 1.0], [0.0, 1.0]].map(|[u, v]| ([u, v, 0.0], [u, v])).into()
+/// The number of a colour in its palette.
+fn index(paint: Paint) -> u8 {
+    let Paint::Colour(index) = paint else { panic!("{paint:?}") };
+    index
 }
 
 /// The colour at each corner of a triangle, with the position of the corner.
 fn corners(mesh: &Mesh) -> Vec<[(V3, Rgb); 3]> {
     let of = |(triangle, vertices): (usize, &[usize; 3])| {
-        let Coloured { palette, colours } = mesh.coloured(triangle).unwrap();
-        [0, 1, 2].map(|k| (mesh.positions[vertices[k]], mesh.palettes[usize::from(palette)][usize::from(colours[k])]))
+        let Coloured { coat, corners } = mesh.coloured(triangle).unwrap();
+        [0, 1, 2].map(|k| (mesh.positions[vertices[k]], mesh.coats[usize::from(coat)].palette()[usize::from(index(corners[k]))]))
     };
     mesh.triangles.iter().enumerate().map(of).collect()
 }
@@ -103,7 +81,7 @@ fn gradients_and_patches_are_right() {
     let [one, mut other] = [patch(0.25), patch(0.75)];
     other.iter_mut().for_each(|(position, _)| position[0] += 1.0);
     let imported = read("a.obj", &[("a.obj", &files(&[one, other])), ("a.mtl", MTL), ("a.png", &patches)]);
-    assert_eq!(imported.mesh.palettes, [[[10, 20, 30], [200, 100, 50]]]);
+    assert_eq!(imported.mesh.coats, [Coat::Palette(vec![[10, 20, 30], [200, 100, 50]])]);
     assert!(imported.painted.of_one_colour == 4 && imported.painted.rms < 1e-9, "{:?}", imported.painted);
 }
 
@@ -275,7 +253,7 @@ fn texture_transforms_are_applied() {
             "meshes": [{"primitives": [{"attributes": {"POSITION": 0, "TEXCOORD_0": 1, "TEXCOORD_1": 2}, "material": 0}]}]
         });
         let imported = read("a.gltf", &[("a.gltf", document.to_string().as_bytes())]);
-        assert_eq!(imported.mesh.palettes, [[patches[patch]]], "{transform}");
+        assert_eq!(imported.mesh.coats, [Coat::Palette(vec![patches[patch]])], "{transform}");
         // The colour of the material is not multiplied into those of corners, and the material stays matt.
         let [Some(material)] = &imported.materials[..] else { panic!("{:?}", imported.materials) };
         let is_yellow = material.diffuse.is_some_and(|own| length(sub(own, [1.0, 1.0, 0.0])) < 1e-9);
@@ -307,7 +285,7 @@ fn many_colours_have_the_nearest_palettes() {
     assert!(painted.palettes > 1 && painted.palettes <= 8 && painted.rms < 6.0, "{painted:?}");
     let (parts, _) = quantise(&imported.mesh);
     assert_eq!(parts.len(), painted.palettes);
-    assert!(is_watertight(&parts) && parts.iter().all(|part| part.material == 0 && part.object == 0 && part.palette.len() <= 256));
+    assert!(is_watertight(&parts) && parts.iter().all(|part| part.material == 0 && part.object == 0 && part.palette().len() <= 256));
     assert!((painted.far as f64) < 0.12 * painted.triangles as f64, "{painted:?}");
 }
 
@@ -318,19 +296,20 @@ const BLUE: Rgb = [0, 0, 200];
 fn two_colours() -> Mesh {
     let mut ball = shapes::sphere(40, 30, 0.0);
     let height = |t: &[usize; 3]| t.iter().map(|&v| ball.positions[v][2]).sum::<f64>();
-    ball.colours = ball.triangles.iter().map(|t| Some(Coloured { palette: 0, colours: [u8::from(height(t) < 0.0); 3] })).collect();
-    ball.palettes = vec![vec![RED, BLUE]];
+    ball.colours =
+        ball.triangles.iter().map(|t| Some(Coloured { coat: 0, corners: [Paint::Colour(u8::from(height(t) < 0.0)); 3] })).collect();
+    ball.coats = vec![Coat::Palette(vec![RED, BLUE])];
     ball
 }
 
 /// Checks that triangles of a ball of two colours have one of them, the right one.
 #[track_caller]
-fn keep_their_colours(part: &Part, triangles: &[microphong::stream::record::Triangle], colours: &[[u8; 3]]) {
+fn keep_their_colours(part: &Part, triangles: &[microphong::stream::record::Triangle], colours: &[[Paint; 3]]) {
     assert_eq!(triangles.len(), colours.len());
     for (triangle, colours) in triangles.iter().zip(colours) {
         let heights = triangle.corners.map(|corner| part.vertices[usize::from(corner)].position[2]);
         assert!(colours[0] == colours[1] && colours[1] == colours[2], "{colours:?}");
-        assert!(heights.iter().all(|&height| if colours[0] == 0 { height >= -1 } else { height <= 1 }), "{heights:?} {colours:?}");
+        assert!(heights.iter().all(|&height| if index(colours[0]) == 0 { height >= -1 } else { height <= 1 }), "{heights:?} {colours:?}");
     }
 }
 
@@ -341,7 +320,7 @@ fn simplified_meshes_keep_borders_of_colours() {
     let (mut parts, _) = quantise(&mesh);
     levels::simplify(&mesh, &mut parts, 600, &|| ()).unwrap().unwrap();
     let [part] = &parts[..] else { panic!("{} parts", parts.len()) };
-    assert!((500..=600).contains(&part.triangles.len()) && part.palette == [RED, BLUE]);
+    assert!((500..=600).contains(&part.triangles.len()) && part.palette() == [RED, BLUE]);
     keep_their_colours(part, &part.triangles, &part.colours);
     let (mut parts, _) = quantise(&mesh);
     levels::add(&mesh, &mut parts, &[0.01, 0.05].map(nearest::<GeometricError>), &|| ()).unwrap();
@@ -370,7 +349,7 @@ fn simplified_gradients_keep_the_colours_of_corners() {
     for (triangle, colours) in part.triangles.iter().zip(&part.colours) {
         for (corner, colour) in triangle.corners.iter().zip(colours) {
             let x = f64::from(part.vertices[usize::from(*corner)].position[0]) / 16384.0;
-            let [red, ..] = part.palette[usize::from(*colour)];
+            let [red, ..] = part.palette()[usize::from(index(*colour))];
             assert!((f64::from(red) / 255.0 - 0.5 - 0.4 * x).abs() < 5.0 / 255.0, "{x} {red}");
         }
     }

@@ -128,7 +128,7 @@ struct Line<'a> {
     /// The saving by --merge, if objects have meshes of their own.
     by_object: Option<ByObject>,
     materials: usize,
-    /// Colours at the corners of triangles, before the mesh is simplified, if there are any.
+    /// Colours at the corners of triangles and textures, before the mesh is simplified, if there are any.
     colours: Option<Painted>,
     /// Triangles that are backs of others, before the mesh is simplified.
     backs: usize,
@@ -251,7 +251,7 @@ pub(crate) fn run(arguments: &Arguments) -> Result<Outcome> {
         list: meshes::rows(&stream)?,
         by_object: by_object(mesh, stream.names.len()),
         materials: materials.iter().flatten().count() - painted.materials,
-        colours: Some(painted).filter(|painted| painted.triangles > 0),
+        colours: Some(painted).filter(Painted::has_any),
         backs,
         vertices: parts.iter().map(|p| p.vertices.len()).sum(),
         triangles: parts.iter().map(|p| p.triangles.len()).sum(),

@@ -46,6 +46,10 @@ struct Line<'a> {
     objects: usize,
     keys: usize,
     labels: usize,
+    textures: usize,
+    texels: usize,
+    /// Triangles that have a texture, with those of coarser levels.
+    texture_corners: usize,
     /// Lines along outlines.
     outlines: Option<Lines>,
     levels: Vec<Level>,
@@ -101,6 +105,9 @@ pub(crate) fn run(arguments: &Arguments) -> Result<Outcome> {
             objects: stream.instances.len().max(1),
             keys: stream.keys.len(),
             labels: stream.labels.len(),
+            textures: stream.textures.len(),
+            texels: stream.texels.len(),
+            texture_corners: stream.texture_corners.len(),
             outlines: Lines::of(&stream),
             levels: levels(&stream),
             bytes: header.length,
@@ -145,8 +152,20 @@ fn text(file: &str, stream: &Stream<'_>, list: &[meshes::Row]) -> Result<()> {
         row("neighbours", stream.neighbours.len(), size_of_val(stream.neighbours), "")?;
     }
     if !stream.colours.is_empty() {
-        row("colours", stream.colours.len(), size_of_val(stream.colours), "the palettes of all meshes")?;
+        row("colours", stream.colours.len(), size_of_val(stream.colours), "the palettes of all meshes and textures")?;
+    }
+    if !stream.corner_colours.is_empty() {
         row("corners", stream.corner_colours.len(), size_of_val(stream.corner_colours), "triangles with the colours at their corners")?;
+    }
+    if !stream.textures.is_empty() {
+        row("textures", stream.textures.len(), size_of_val(stream.textures), "")?;
+        row("texels", stream.texels.len(), stream.texels.len(), "")?;
+        row(
+            "places",
+            stream.texture_corners.len(),
+            size_of_val(stream.texture_corners),
+            "triangles with the places of their corners in a texture",
+        )?;
     }
     if !stream.labels.is_empty() {
         row("labels", stream.labels.len(), size_of_val(stream.labels), &labels(stream))?;

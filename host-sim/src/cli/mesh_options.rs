@@ -4,6 +4,7 @@ use super::{Usage, parse};
 use microphong::format::MAX_LIGHTS;
 use microphong_sim::{
     backs::Sides,
+    coat::TextureSize,
     convert::{AZIMUTH, DISTANCE, ELEVATION, Finish, ORBIT, Options},
     import::{Colours, Rules},
     look::{Lamp, Surface},
@@ -45,9 +46,15 @@ pub(crate) struct MeshOptions {
     #[arg(long)]
     allow_outside: bool,
     /// What becomes of the colours of textures and vertices. With corners, triangles have colours at their corners, which take 4 bytes of flash for each
-    /// triangle. With none, these colours are left out, and images are not read.
+    /// triangle. With texture, materials have a texture if more than 5 % of their area would be farther than 24 of 255 from it; it takes 1 byte for each
+    /// texel and 12 bytes for each triangle, and a program needs the feature textures. Other materials have colours at corners. With none, the colours of
+    /// textures and vertices are left out, and images are not read.
     #[arg(long, visible_alias = "colors", default_value = "corners", value_parser = parse::Corners)]
     colours: Colours,
+    /// Largest width and height of textures, in texels: 8, 16, 32, 64, 128 or 256. The default is 128. Each side of an image is reduced to the nearest
+    /// power of two, or to this number. It needs --colours texture.
+    #[arg(long, value_name = "TEXELS", value_parser = parse::texture_size)]
+    texture_size: Option<TextureSize>,
     /// Merge all objects into one object without a name, which takes less flash. It has one mesh for each material.
     #[arg(long)]
     merge: bool,
@@ -117,6 +124,9 @@ impl MeshOptions {
         if self.lights.len() > MAX_LIGHTS {
             return Err(Usage(format!("{} times --light; a scene has at most {MAX_LIGHTS} lights", self.lights.len())));
         }
+        if self.texture_size.is_some() && self.colours != Colours::Texture {
+            return Err(Usage("--texture-size is the size of textures, which meshes have with --colours texture".to_owned()));
+        }
         let view = View::orbit(self.up, self.azimuth.to_radians(), self.elevation.to_radians(), DISTANCE, self.orbit);
         let Finish { colour, shares, exponent, background } = Finish::of(format);
         let [ambient, diffuse, specular] = [self.ambient, self.diffuse, self.specular];
@@ -132,6 +142,7 @@ impl MeshOptions {
                     (_, true) => Sides::One,
                     _ => Sides::OfFile,
                 },
+                texture_size: self.texture_size.unwrap_or_default(),
                 colours: if self.colour.is_some() { Colours::None } else { self.colours },
             },
             merge: self.merge,

@@ -20,6 +20,8 @@ pub(crate) struct Row {
     colours: usize,
     /// Number of triangles that have colours and have only one.
     of_one_colour: usize,
+    /// Width and height of its texture.
+    texture: Option<[u32; 2]>,
 }
 
 /// All meshes of a stream.
@@ -44,6 +46,7 @@ pub(crate) fn rows(stream: &Stream<'_>) -> Result<Vec<Row>, StreamError> {
                     triangles: mesh.triangles,
                     colours: colours.len(),
                     of_one_colour: corners.iter().filter(|corners| corners.range == 0).count(),
+                    texture: stream.texture_of(mesh).map(|texture| texture.size.map(|side| 1 << side)),
                 });
             }
         }
@@ -58,18 +61,18 @@ pub(crate) fn rows(stream: &Stream<'_>) -> Result<Vec<Row>, StreamError> {
     Ok(rows)
 }
 
-/// Lists at most `most` meshes, if there are several, or objects have names, or triangles have colours. `materials` are names from the converted file.
+/// Lists at most `most` meshes, if there are several, or objects have names, or triangles have colours or a texture. `materials` are names from the converted file.
 pub(crate) fn text(rows: &[Row], materials: &[Option<&str>], most: usize) -> Result<()> {
-    if matches!(rows, [Row { name: None, colours: 0, .. }]) {
+    if matches!(rows, [Row { name: None, colours: 0, texture: None, .. }]) {
         return Ok(());
     }
-    for Row { index, end, name, material, triangles, colours, of_one_colour } in rows.iter().take(most) {
+    for Row { index, end, name, material, triangles, colours, of_one_colour, texture } in rows.iter().take(most) {
         let name = name.as_ref().map_or_else(String::new, |name| format!("{name:?}, "));
         let of = materials.get(usize::from(*material)).copied().flatten().map_or_else(String::new, |of| format!(" {of:?}"));
         let meshes = if end - index > 1 { format!("meshes {index} to {}", end - 1) } else { format!("mesh {index}") };
         let triangles = report::counted(*triangles, report::TRIANGLES);
         let colours = match colours {
-            0 => String::new(),
+            0 => texture.map_or_else(String::new, |[width, height]| format!(" with a texture of {width}x{height}")),
             1 => ", all of one colour".to_owned(),
             several => format!(" with {several} colours, {} of them of one colour", report::grouped(*of_one_colour as u64)),
         };

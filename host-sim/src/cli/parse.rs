@@ -9,6 +9,7 @@ use microphong::{
     format::{ErrorBudget, LARGEST_BUDGET, LEAST_BUDGET},
 };
 use microphong_sim::{
+    coat::TextureSize,
     import::Colours,
     look::{Cone, LIGHT_RANGE, Lamp, LampKind},
     papers::Topic,
@@ -128,6 +129,11 @@ impl TypedValueParser for Corners {
     fn possible_values(&self) -> Option<Box<dyn Iterator<Item = PossibleValue> + '_>> {
         Some(Box::new(Colours::ALL.into_iter().map(|colours| PossibleValue::new(colours.name()))))
     }
+}
+
+/// The largest side of a texture.
+pub(crate) fn texture_size(text: &str) -> Result<TextureSize, String> {
+    text.parse().ok().and_then(TextureSize::of).ok_or_else(|| format!("one of {} is needed", TextureSize::names()))
 }
 
 /// A pixel format by its name here, or by the name of its type in programs.

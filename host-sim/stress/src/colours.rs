@@ -3,6 +3,7 @@
 use crate::random::Random;
 use microphong::stream::record::{Triangle, Vertex};
 use microphong_models::{
+    coat::{Coat, Paint},
     quantise::Part,
     vector::{V3, dot},
 };
@@ -42,7 +43,7 @@ pub(crate) fn paint(random: &mut Random, parts: &mut [Part]) {
             3 => Kind::Along(random.direction()),
             _ => Kind::Both,
         };
-        part.palette.clone_from(&colours);
+        part.coat = Some(Coat::Palette(colours.clone()));
         let count = colours.len() as i32;
         part.colours = corners(random, kind, count, &part.vertices, &part.triangles);
         for level in &mut part.coarser {
@@ -76,7 +77,7 @@ pub(crate) fn palette(random: &mut Random) -> Vec<[u8; 3]> {
 }
 
 /// For each triangle the colours of its corners, as indices of a palette of so many colours.
-fn corners(random: &mut Random, kind: Kind, count: i32, vertices: &[Vertex], triangles: &[Triangle]) -> Vec<[u8; 3]> {
+fn corners(random: &mut Random, kind: Kind, count: i32, vertices: &[Vertex], triangles: &[Triangle]) -> Vec<[Paint; 3]> {
     let mut of = |triangle: &Triangle| {
         let kind = match kind {
             Kind::Both => random.among(&[Kind::Mixed, Kind::Plain]),
@@ -96,7 +97,7 @@ fn corners(random: &mut Random, kind: Kind, count: i32, vertices: &[Vertex], tri
             Kind::Mixed | Kind::Both => [(); 3].map(|()| random.pick(0..count)),
         }
     };
-    triangles.iter().map(|triangle| of(triangle).map(|index| index as u8)).collect()
+    triangles.iter().map(|triangle| of(triangle).map(|index| Paint::Colour(index as u8))).collect()
 }
 
 #[cfg(test)]

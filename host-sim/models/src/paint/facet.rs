@@ -2,11 +2,15 @@
 
 use super::split::Part;
 use crate::{
+    coat::{self, Place},
     mesh::{Mesh, Soup, Source},
     texture::{Image, Texture},
     vector::V3,
 };
 use std::collections::HashMap;
+
+/// A triangle may lie over fewer than this many repetitions of its texture.
+pub(super) const REPEATS: f64 = 16.0;
 
 /// A triangle of which every point has a colour.
 #[derive(Clone, Copy)]
@@ -14,7 +18,7 @@ pub(super) struct Facet<'a> {
     /// The colours of the corners, by which the texture is multiplied.
     pub(super) corners: [V3; 3],
     /// Whether they are white, so that the texture has all of the colour.
-    is_white: bool,
+    pub(super) is_white: bool,
     /// The image of the texture, and the places of the corners on it.
     pub(super) texture: Option<(&'a Image, [[f64; 2]; 3])>,
 }
@@ -29,6 +33,14 @@ impl Facet<'_> {
         }
         let own = mixed(&self.corners, [p, q, r]);
         [own[0] * texel[0], own[1] * texel[1], own[2] * texel[2]]
+    }
+
+    /// The places of the corners in its texture as a stream has them; `None` if it has no texture, or the texture repeats itself too often.
+    pub(super) fn places(&self) -> Option<[Place; 3]> {
+        let (_, corners) = self.texture?;
+        let reaches_far = |axis: usize| corners.iter().any(|corner| (corner[axis] - corners[0][axis]).abs() >= REPEATS);
+        let places = corners.map(coat::place);
+        (!reaches_far(0) && !reaches_far(1) && coat::texture_corners(places).is_some()).then_some(places)
     }
 
     /// The part of the triangle whose corners have these shares of its corners.
@@ -48,6 +60,7 @@ pub(super) fn mixed([a, b, c]: &[V3; 3], [p, q, r]: [f64; 3]) -> V3 {
 }
 
 /// The triangles of a mesh, as the soup colours them.
+#[derive(Clone)]
 pub(super) struct Facets<'a> {
     pub(super) soup: &'a Soup,
     /// The textures of materials.
@@ -71,7 +84,8 @@ impl<'a> Facets<'a> {
         if corners.is_none() && texture.is_none() {
             return None;
         }
-        let facet = Facet { is_white: corners.is_none(), corners: corners.unwrap_or([[1.0; 3]; 3]), texture };
+        let corners = corners.unwrap_or([[1.0; 3]; 3]);
+        let facet = Facet { is_white: corners == [[1.0; 3]; 3], corners, texture };
         match self.parts.is_empty() {
             true => Some(facet),
             false => Some(self.parts.get(&triangle).map_or(facet, |part| facet.part(part))),

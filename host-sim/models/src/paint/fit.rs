@@ -11,6 +11,8 @@ const POINTS: usize = SIDE * (SIDE + 1) / 2;
 const FLAT: f64 = 3.0 / 255.0;
 /// A colour that differs from that of the file by more than this share of full is said to be far.
 pub(super) const FAR: f64 = 12.0 / 255.0;
+/// Colours that differ from that of the file by more than this share of full, with what rounding may add, give no idea of a texture.
+const LOST: f64 = 24.0 / 255.0 + 1e-9;
 /// The distance that colours of corners should have at most before they are rounded to 8 bits.
 const AIM: f64 = 11.5 / 255.0;
 /// The largest distance, in units of [`AIM`], from which other colours of corners are sought that are not far.
@@ -35,6 +37,8 @@ pub(super) struct Apart {
     pub(super) largest: f64,
     /// The mean of the squared differences of all channels.
     pub(super) squares: f64,
+    /// The share of points at which a channel differs by more than 24 of 255. Linear colours are all of them, or none.
+    pub(super) lost: f64,
 }
 
 /// The points at which colours are compared, and what finds the colours of least squares.
@@ -79,7 +83,7 @@ impl Fitting {
         let [own, all] = self.inverse;
         let fitted = sums.map(|own_sum| add(scale(own_sum, own), scale(sum, all)).map(|c| c.clamp(0.0, 1.0)));
         let sampled = [[1.0, 0.0, 0.0], [0.0, 1.0, 0.0], [0.0, 0.0, 1.0]].map(|corner| facet.at(corner));
-        let [by_squares, by_sample] = [fitted, sampled].map(|corners| self.apart_at(&seen, &corners));
+        let [by_squares, by_sample] = [fitted, sampled].map(|corners| self.apart_at(&seen, |shares| mixed(&corners, shares)));
         let sample_is_better = (by_sample.largest > AIM, by_sample.squares) < (by_squares.largest > AIM, by_squares.squares);
         let (corners, apart) = if sample_is_better { (sampled, by_sample) } else { (fitted, by_squares) };
         let is_far = apart.largest > AIM;
@@ -122,8 +126,13 @@ impl Fitting {
         } else if fit.is_uniform {
             Apart::linear(&fit.corners, corners)
         } else {
-            self.apart_at(&self.seen(facet), corners)
+            self.apart_by(facet, |shares| mixed(corners, shares))
         }
+    }
+
+    /// How far other colours, by the shares of corners, are from those of a triangle.
+    pub(super) fn apart_by(&self, facet: &Facet<'_>, other: impl Fn([f64; 3]) -> V3) -> Apart {
+        self.apart_at(&self.seen(facet), other)
     }
 
     /// The colours of a triangle at all points.
@@ -133,17 +142,16 @@ impl Fitting {
         seen
     }
 
-    fn apart_at(&self, seen: &[V3; POINTS], corners: &[V3; 3]) -> Apart {
-        let (mut largest, mut squares) = (0.0f64, 0.0);
-        for (&shares, colour) in self.points.iter().zip(seen) {
-            let own = mixed(corners, shares);
-            for channel in 0..3 {
-                let difference = colour[channel] - own[channel];
-                largest = largest.max(difference.abs());
-                squares += difference * difference;
-            }
+    fn apart_at(&self, seen: &[V3; POINTS], other: impl Fn([f64; 3]) -> V3) -> Apart {
+        let (mut largest, mut squares, mut lost) = (0.0f64, 0.0, 0);
+        for (&shares, &colour) in self.points.iter().zip(seen) {
+            let difference = sub(colour, other(shares));
+            let here = difference.into_iter().fold(0.0f64, |most, difference| most.max(difference.abs()));
+            largest = largest.max(here);
+            lost += usize::from(here > LOST);
+            difference.into_iter().for_each(|difference| squares += difference * difference);
         }
-        Apart { largest, squares: squares / (3 * POINTS) as f64 }
+        Apart { largest, squares: squares / (3 * POINTS) as f64, lost: lost as f64 / POINTS as f64 }
     }
 }
 
@@ -152,11 +160,9 @@ impl Apart {
     fn linear(one: &[V3; 3], other: &[V3; 3]) -> Self {
         let differences = [sub(one[0], other[0]), sub(one[1], other[1]), sub(one[2], other[2])];
         let [a, b, c] = differences;
+        let largest = differences.as_flattened().iter().fold(0.0f64, |most, difference| difference.abs().max(most));
         let square = |k: usize| (a[k] * (a[k] + b[k] + c[k]) + b[k] * (b[k] + c[k]) + c[k] * c[k]) / 6.0;
-        Self {
-            largest: differences.as_flattened().iter().fold(0.0, |most, difference| difference.abs().max(most)),
-            squares: (square(0) + square(1) + square(2)) / 3.0,
-        }
+        Self { largest, squares: (square(0) + square(1) + square(2)) / 3.0, lost: if largest > LOST { 1.0 } else { 0.0 } }
     }
 }
 

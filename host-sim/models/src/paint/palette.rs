@@ -1,18 +1,21 @@
 //! Palettes: few colours for many.
 //!
-//! A mesh of a stream has at most 256 colours, and a stream has room for 256 blocks of 16 colours. If colours that differ by no more than two steps of 255
-//! are one colour, the colours of most models fit into one palette. All meshes of the model share it. Otherwise each material has a palette of its own. A
+//! A mesh or a texture of a stream has at most 256 colours, and a stream has room for 256 blocks of 16 colours. If colours that differ by no more than two steps of 255
+//! are one colour, the colours of most models fit into one palette. All meshes of the model without a texture share it. Otherwise each material has a palette of its own. A
 //! material with more colours has the 256 that are nearest to all of them. If too many colours are far from these, it has several palettes, and so several
 //! meshes.
 
-use crate::mesh::{Coloured, Rgb};
+use crate::{
+    coat::Paint,
+    mesh::{Coloured, Rgb},
+};
 use microphong::stream::record::PALETTE;
 use std::collections::{BTreeMap, HashMap};
 
 /// Largest number of colours of a palette.
-const MOST: usize = 256;
+pub(super) const MOST: usize = 256;
 /// Largest number of blocks of colours of a stream.
-const BLOCKS: usize = 256;
+pub(super) const BLOCKS: usize = 256;
 /// Colours that differ by no more than this are one colour.
 const SAME: u8 = 2;
 /// A colour that differs by more than this from the one that stands for it is far.
@@ -32,6 +35,8 @@ pub(super) struct Colours<'a> {
     pub(super) is_exact: &'a [bool],
     /// The number of each triangle's material.
     pub(super) material: &'a dyn Fn(usize) -> usize,
+    /// Number of blocks of colours that the palettes may take, at least those of one palette.
+    pub(super) blocks: usize,
 }
 
 /// Palettes of a mesh.
@@ -49,14 +54,16 @@ impl Colours<'_> {
     pub(super) fn reduced(&self) -> Reduced {
         let coloured: Vec<usize> = (0..self.triangles.len()).filter(|&triangle| self.triangles[triangle].is_some()).collect();
         let counts = self.counts(&coloured);
-        let groups = match Palette::of_few(&counts) {
+        let groups = match Palette::of_few(&counts, MOST) {
+            _ if coloured.is_empty() => Vec::new(),
             Some(palette) => vec![(coloured, palette)],
             None => self.by_materials(coloured, &counts),
         };
         let mut triangles = vec![None; self.triangles.len()];
         for (number, (group, palette)) in (0..).zip(&groups) {
             for &triangle in group {
-                let of = |corners: [Rgb; 3]| Coloured { palette: number, colours: corners.map(|colour| palette.index[&colour]) };
+                let of =
+                    |corners: [Rgb; 3]| Coloured { coat: number, corners: corners.map(|colour| Paint::Colour(palette.index[&colour])) };
                 triangles[triangle] = self.triangles[triangle].map(of);
             }
         }
@@ -69,21 +76,20 @@ impl Colours<'_> {
         let mut materials: BTreeMap<usize, Vec<usize>> = BTreeMap::new();
         coloured.iter().for_each(|&triangle| materials.entry((self.material)(triangle)).or_default().push(triangle));
         let groups = |divisions: usize| materials.values().flat_map(|group| self.divided(group.clone(), divisions)).collect::<Vec<_>>();
-        let blocks =
-            |groups: &[(Vec<usize>, Palette)]| -> usize { groups.iter().map(|(_, palette)| palette.colours.len().div_ceil(PALETTE)).sum() };
-        let groups = (0..=DIVISIONS).rev().map(groups).find(|groups| blocks(groups) <= BLOCKS);
-        groups.unwrap_or_else(|| vec![(coloured, Palette::of_many(counts))])
+        let blocks = |groups: &[(Vec<usize>, Palette)]| -> usize { groups.iter().map(|(_, palette)| blocks(&palette.colours)).sum() };
+        let groups = (0..=DIVISIONS).rev().map(groups).find(|groups| blocks(groups) <= self.blocks);
+        groups.unwrap_or_else(|| vec![(coloured, Palette::of_many(counts, MOST))])
     }
 
     /// Triangles with a palette, or several groups of them with a palette each.
     fn divided(&self, group: Vec<usize>, divisions: usize) -> Vec<(Vec<usize>, Palette)> {
         let counts = self.counts(&group);
-        if let Some(palette) = Palette::of_few(&counts) {
+        if let Some(palette) = Palette::of_few(&counts, MOST) {
             return vec![(group, palette)];
         }
-        let palette = Palette::of_many(&counts);
+        let palette = Palette::of_many(&counts, MOST);
         let is_far = |colour: Rgb| distance(colour, palette.colours[usize::from(palette.index[&colour])]) > FAR;
-        let far: usize = counts.0.iter().filter(|count| is_far(count.colour)).map(|count| count.corners).sum();
+        let far: usize = counts.0.iter().filter(|count| is_far(count.colour)).map(|count| count.number).sum();
         if divisions == 0 || far as f64 <= FEW * (3 * group.len()) as f64 {
             return vec![(group, palette)];
         }
@@ -103,33 +109,49 @@ impl Colours<'_> {
 
     /// The colours of these triangles.
     fn counts(&self, group: &[usize]) -> Counts {
-        let number = |[r, g, b]: Rgb, is_exact: bool| u32::from_be_bytes([u8::from(!is_exact), r, g, b]);
-        let mut colours: Vec<u32> = Vec::with_capacity(3 * group.len());
-        for &triangle in group {
-            let is_exact = self.is_exact[triangle];
-            colours.extend(self.triangles[triangle].unwrap_or_default().map(|colour| number(colour, is_exact)));
-        }
-        colours.sort_unstable();
-        let count = |equal: &[u32]| {
-            let [is_plain, r, g, b] = equal[0].to_be_bytes();
-            Count { colour: [r, g, b], corners: equal.len(), is_exact: is_plain == 0 }
-        };
-        let mut counts: Vec<Count> = colours.chunk_by(|one, other| one == other).map(count).collect();
-        counts.sort_by_key(|count| (!count.is_exact, usize::MAX - count.corners));
-        Counts(counts)
+        let corners = |&triangle: &usize| self.triangles[triangle].unwrap_or_default().map(|colour| (colour, self.is_exact[triangle]));
+        Counts::of(group.iter().flat_map(corners))
     }
 }
 
-/// How many corners have a colour.
+/// A palette of at most `most` of colours, and which of its colours stands for each of them.
+pub(super) fn indexed(colours: &[Rgb], most: usize) -> (Vec<Rgb>, Vec<u8>) {
+    let counts = Counts::of(colours.iter().map(|&colour| (colour, true)));
+    let palette = Palette::of_few(&counts, most).unwrap_or_else(|| Palette::of_many(&counts, most));
+    let indices = colours.iter().map(|colour| palette.index[colour]).collect();
+    (palette.colours, indices)
+}
+
+/// The number of blocks that a palette takes.
+pub(super) fn blocks(palette: &[Rgb]) -> usize {
+    palette.len().div_ceil(PALETTE)
+}
+
+/// How many corners or texels have a colour.
 struct Count {
     colour: Rgb,
-    corners: usize,
-    /// Whether they are corners of triangles that keep their colours.
+    number: usize,
+    /// Whether they keep their colour.
     is_exact: bool,
 }
 
-/// The colours of corners, the ones that are kept first, and then the most frequent ones.
+/// The colours of corners or texels, the ones that are kept first, and then the most frequent ones.
 struct Counts(Vec<Count>);
+
+impl Counts {
+    /// Colours, and whether they are kept.
+    fn of(colours: impl Iterator<Item = (Rgb, bool)>) -> Self {
+        let mut colours: Vec<u32> = colours.map(|([r, g, b], is_exact)| u32::from_be_bytes([u8::from(!is_exact), r, g, b])).collect();
+        colours.sort_unstable();
+        let count = |equal: &[u32]| {
+            let [is_plain, r, g, b] = equal[0].to_be_bytes();
+            Count { colour: [r, g, b], number: equal.len(), is_exact: is_plain == 0 }
+        };
+        let mut counts: Vec<Count> = colours.chunk_by(|one, other| one == other).map(count).collect();
+        counts.sort_by_key(|count| (!count.is_exact, usize::MAX - count.number));
+        Self(counts)
+    }
+}
 
 /// Colours, and which of them stands for another one.
 struct Palette {
@@ -140,35 +162,38 @@ struct Palette {
 }
 
 impl Palette {
-    /// A palette of the most frequent colours, which stand for all that are nearly equal to them; `None` if there are too many.
-    fn of_few(counts: &Counts) -> Option<Self> {
-        Self::of_few_within(counts, 0).or_else(|| Self::of_few_within(counts, SAME))
+    /// A palette of the most frequent colours, which stand for all that are nearly equal to them; `None` if there are more than `most`.
+    fn of_few(counts: &Counts, most: usize) -> Option<Self> {
+        Self::of_few_within(counts, most, 0).or_else(|| Self::of_few_within(counts, most, SAME))
     }
 
     /// A palette as [`Self::of_few`] makes it, in which colours that are kept differ by no more than `exact` from those that stand for them.
-    fn of_few_within(Counts(counts): &Counts, exact: u8) -> Option<Self> {
+    fn of_few_within(Counts(counts): &Counts, most: usize, exact: u8) -> Option<Self> {
         let mut palette = Self { colours: Vec::new(), index: HashMap::new(), is_close: true };
         for count in counts {
             if palette.index.contains_key(&count.colour) {
                 continue;
             }
-            let most = if count.is_exact { exact } else { SAME };
-            let nearest = nearest(&palette.colours, count.colour).filter(|&(_, distance)| distance <= most);
+            let same = if count.is_exact { exact } else { SAME };
+            let nearest = nearest(&palette.colours, count.colour).filter(|&(_, distance)| distance <= same);
             let number = nearest.map_or(palette.colours.len(), |(number, _)| number);
+            if number == most {
+                return None;
+            }
             if number == palette.colours.len() {
                 palette.colours.push(count.colour);
             }
-            palette.index.insert(count.colour, u8::try_from(number).ok()?);
+            palette.index.insert(count.colour, number as u8);
         }
         Some(palette)
     }
 
-    /// The palette of most colours that is about nearest to all of these: boxes of colours are divided until there are enough of them (Heckbert 1982; Wu
+    /// The palette of `most` colours that is about nearest to all of these: boxes of colours are divided until there are enough of them (Heckbert 1982; Wu
     /// 1992 chooses the box of the largest squared error), and then each colour moves to the middle of those that are nearest to it (Lloyd 1982).
-    fn of_many(Counts(counts): &Counts) -> Self {
+    fn of_many(Counts(counts): &Counts, most: usize) -> Self {
         let mut points: Vec<([f64; 3], f64)> = cells(counts);
         let mut ranges = vec![(0..points.len(), Cluster::of(&points))];
-        while ranges.len() < MOST {
+        while ranges.len() < most {
             let worst = (0..ranges.len()).max_by(|&one, &other| ranges[one].1.error().total_cmp(&ranges[other].1.error()));
             let Some(worst) = worst.filter(|&worst| ranges[worst].1.error() > 0.0) else { break };
             let (range, all) = ranges.swap_remove(worst);
@@ -205,7 +230,7 @@ impl Palette {
 fn cells(counts: &[Count]) -> Vec<([f64; 3], f64)> {
     let mut cells: BTreeMap<Rgb, Cluster> = BTreeMap::new();
     for count in counts {
-        cells.entry(count.colour.map(|c| c / 4)).or_default().add(count.colour.map(f64::from), count.corners as f64);
+        cells.entry(count.colour.map(|c| c / 4)).or_default().add(count.colour.map(f64::from), count.number as f64);
     }
     cells.values().map(|cell| (cell.mean(), cell.weight.sqrt())).collect()
 }
