@@ -2,7 +2,7 @@
 
 use crate::vertex_colours::{CORE, coloured, difference, lights, parts, picture};
 use microphong::{
-    Stream, StreamError,
+    StreamError,
     stream::record::{Colour, HAS_TEXTURE, Mesh, Texture, TextureCorners},
 };
 use microphong_sim::{
@@ -75,7 +75,7 @@ fn wrong_textures_are_refused() {
         let mut records = right();
         change(&mut records);
         match StreamBytes::from(&records.bytes(|_| ())[..]).parse() {
-            Ok(Stream { textures, .. }) => panic!("{} textures are right", textures.len()),
+            Ok(stream) => panic!("{} textures are right", stream.textures().list.len()),
             Err(StreamError::Field { name, .. }) => name,
             Err(other) => panic!("{other}"),
         }

@@ -312,7 +312,7 @@ impl<'a> Scene<'a> {
 
     /// Whether a mesh has colours at its corners, or a texture.
     fn has_colours(&self) -> bool {
-        VERTEX_COLOURS && !(self.stream.corner_colours.is_empty() && self.stream.textures.is_empty())
+        VERTEX_COLOURS && !(self.stream.corner_colours.is_empty() && self.stream.header.textures == 0)
     }
 
     /// Whether a mesh with colours at its corners, or with a texture, has the material with this index.
