@@ -209,7 +209,10 @@ fn checksum(bytes: &[u8]) -> u32 {
 /// Writes the checksum of `bytes` into their header. A program that writes streams does this last.
 #[doc(hidden)]
 pub fn seal(bytes: &mut [u8]) {
-    let crc = checksum(bytes);
+    if bytes.len() < CRC_AT.end {
+        return;
+    }
+    let crc = included::checksum_by_table(bytes);
     if let Some(stored) = bytes.get_mut(CRC_AT) {
         stored.copy_from_slice(&crc.to_le_bytes());
     }
