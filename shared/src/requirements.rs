@@ -29,7 +29,7 @@ impl Feature {
             Self::NearLights => !stream.is_constant(),
             Self::Objects => stream.instances.len() > 1,
             Self::Text => !stream.labels.is_empty(),
-            Self::Textures => !stream.textures.is_empty(),
+            Self::Textures => header.textures > 0,
             Self::VertexColours => !stream.corner_colours.is_empty(),
         }
     }

@@ -120,7 +120,7 @@ impl<C: Pixel> Shader<C> {
     /// The loops that draw a style.
     pub(crate) fn loops(&self, style: Style) -> TriangleLoops<C> {
         // Decision: style.
-        match ((self.take)(style), style.three_channels) {
+        match ((self.take)(style) && !style.has_texture, style.three_channels) {
             (true, false) => self.loops,
             (true, true) => self.three_channels,
             (false, _) => self.general,

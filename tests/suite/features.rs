@@ -15,8 +15,14 @@ use std::{collections::BTreeSet, fs, process::Command};
 use tempfile::TempDir;
 
 /// Features of the core, each set compiled for this computer.
-const SETS: [&str; 6] =
-    ["", "colours", "antialias,light-shapes,near-lights", "animation,colours,lights,objects", "colours,vertex-colours", "textures"];
+const SETS: [&str; 6] = [
+    "",
+    "colours",
+    "antialias,light-shapes,near-lights",
+    "animation,colours,lights,objects",
+    "colours,vertex-colours",
+    "colours,textures,vertex-colours",
+];
 const ALL: &str = "animation,antialias,colours,light-shapes,lights,near-lights,objects,redraw,text,textures,vertex-colours";
 
 const SCENES: [&str; 8] = ["teapot", "torus", "sphere-40", "peer-sphere-plastic", "peer-sphere-lights", "gauges", "board", "sensor"];

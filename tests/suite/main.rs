@@ -46,6 +46,7 @@ mod skips;
 mod split;
 mod still;
 mod stress;
+mod textures;
 mod verify;
 mod vertex_colours;
 mod watertight;

@@ -28,25 +28,25 @@ pub(crate) fn coloured(parts: Records, palette: &[[u8; 3]], index: impl Fn(usize
     parts.written().unwrap()
 }
 
-fn parts(name: &str) -> Records {
+pub(crate) fn parts(name: &str) -> Records {
     Records::of(&scene::load(name).unwrap().stream.parse().unwrap())
 }
 
-fn picture(stream: &StreamBytes, shader: Shader, format: Format) -> Vec<u8> {
+pub(crate) fn picture(stream: &StreamBytes, shader: Shader, format: Format) -> Vec<u8> {
     let settings = Settings { size: Size::new(160, 120), style: shader.into(), band_rows: 16, format };
     render::picture(stream.parse().unwrap(), &settings, 0).unwrap().rgb
 }
 
 /// The largest difference of two pictures.
-fn difference(one: &[u8], other: &[u8]) -> u8 {
+pub(crate) fn difference(one: &[u8], other: &[u8]) -> u8 {
     one.iter().zip(other).map(|(&a, &b)| a.abs_diff(b)).max().unwrap()
 }
 
-const CORE: [Shader; 7] =
+pub(crate) const CORE: [Shader; 7] =
     [Shader::FLAT, Shader::GOURAUD, Shader::SIX_POINT, Shader::PHONG, Shader::SQRT6, Shader::AUTO, Shader::AUTO_LINEAR];
 
 /// Lights of one kind each: one, several, near ones.
-fn lights() -> [(&'static str, Vec<Light>); 4] {
+pub(crate) fn lights() -> [(&'static str, Vec<Light>); 4] {
     let one = Light::directional([1, 2, -2], [1.0, 0.9, 0.8]).unwrap().with_camera();
     let other = Light::directional([-2, 1, -1], [0.2, 0.3, 0.5]).unwrap().with_camera();
     let third = Light::directional([0, -1, -1], [0.2, 0.1, 0.1]).unwrap().with_camera();

@@ -80,7 +80,7 @@ fn a_checkerboard_is_kept_exactly() {
     let [mesh] = stream.meshes else { panic!("{} meshes", stream.meshes.len()) };
     assert!(mesh.flags & (HAS_TEXTURE | HAS_COLOURS) == HAS_TEXTURE && stream.corner_colours.is_empty());
     let texture = stream.texture_of(mesh).unwrap();
-    assert_eq!((texture.size, texture.texels.len(), stream.texels.len(), stream.colours.len()), ([3, 3], 64, 64, 3));
+    assert_eq!((texture.size, texture.texels.len(), stream.textures().texels.len(), stream.colours.len()), ([3, 3], 64, 64, 3));
     let texels: Vec<Rgb> = texture.texels.iter().map(|&texel| texture.palette[usize::from(texel)].channels).collect();
     assert_eq!(texels, image.concat());
     for (position, place) in places(&bytes).concat() {
@@ -106,7 +106,7 @@ fn images_are_resampled_by_areas() {
         let size = TextureSize::of(size).unwrap();
         Options { rules: Rules { texture_size: size, colours: Colours::Texture, ..Rules::default() }, ..Options::default() }
     };
-    let size_of = |bytes: &StreamBytes| bytes.parse().unwrap().textures.iter().map(|texture| texture.size).collect::<Vec<_>>();
+    let size_of = |bytes: &StreamBytes| bytes.parse().unwrap().textures().list.iter().map(|texture| texture.size).collect::<Vec<_>>();
     // Four pixels become one texel, of their mean colour.
     let mut image = chequered(8, 2);
     image[0][1] = [50, 40, 230];
@@ -163,7 +163,7 @@ fn places_are_shifted_and_end_at_sixteen() {
     let too_far = moved(square(), 4.0, 16.0, [0.25, 0.0]);
     let (converted, bytes) = model(&[near, far, too_far], &image, &with_textures());
     let stream = bytes.parse().unwrap();
-    let all: Vec<[u16; 2]> = stream.texture_corners.iter().flat_map(|corners| corners.0).collect();
+    let all: Vec<[u16; 2]> = stream.textures().corners.iter().flat_map(|corners| corners.0).collect();
     assert_eq!(all.len(), 12);
     for place in &all[..6] {
         assert!(place[0] == 1024 || place[0] == 5120, "{place:?}");
@@ -191,7 +191,7 @@ fn the_area_that_is_far_decides() {
     for (side, is_textured) in [(2.0, true), (6.0, false)] {
         let (converted, bytes) = model(&[small.clone(), large(side)], &image, &with_textures());
         let stream = bytes.parse().unwrap();
-        assert_eq!((stream.textures.len(), stream.texture_corners.len()), if is_textured { (1, 4) } else { (0, 0) });
+        assert_eq!((stream.textures().list.len(), stream.textures().corners.len()), if is_textured { (1, 4) } else { (0, 0) });
         assert_eq!((converted.painted.textures.is_some(), converted.painted.lost_materials), (is_textured, usize::from(is_textured)));
         assert_eq!(converted.painted.triangles, if is_textured { 0 } else { 4 });
     }
@@ -204,7 +204,7 @@ fn the_area_that_is_far_decides() {
     }
     // By default the texture is only recommended.
     let (converted, bytes) = model(&[square()], &chequered(8, 1), &Options::default());
-    assert!(bytes.parse().unwrap().textures.is_empty() && converted.painted.textures.is_none() && converted.painted.triangles == 2);
+    assert!(bytes.parse().unwrap().textures().list.is_empty() && converted.painted.textures.is_none() && converted.painted.triangles == 2);
     let [remark] = &converted.remarks[..] else { panic!("{:?}", converted.remarks) };
     let share = (100.0 * converted.painted.lost_area).round();
     let end = format!(
@@ -247,7 +247,10 @@ fn equal_textures_are_written_once() {
     let flags: Vec<u8> = stream.meshes.iter().map(|mesh| mesh.flags & (HAS_COLOURS | HAS_TEXTURE)).collect();
     assert_eq!(flags, [HAS_TEXTURE, HAS_TEXTURE, HAS_COLOURS]);
     // The palette of the colours at corners is apart from that of the texture.
-    assert_eq!((stream.textures, stream.texels.len()), (&[Texture { first_texel: 0, size: [3, 3], palette: 0, unused: 0 }][..], 64));
+    assert_eq!(
+        (stream.textures().list, stream.textures().texels.len()),
+        (&[Texture { first_texel: 0, size: [3, 3], palette: 0, unused: 0 }][..], 64)
+    );
     assert_eq!((stream.meshes[2].palette, stream.colours[16].channels, stream.colours.len()), (1, [7, 8, 9], 17));
     assert_eq!(stream.materials[1].diffuse().map(|gain| gain.to_num::<f64>()), [1.0, 0.5, 1.0]);
     let painted = converted.painted;
@@ -261,7 +264,7 @@ fn backs_have_the_same_texture() {
     let options = Options { rules: Rules { colours: Colours::Texture, sides: Sides::Two, ..Rules::default() }, ..Options::default() };
     let (_, bytes) = model(&[moved(square(), 0.0, 2.0, [0.5, 0.25])], &chequered(8, 1), &options);
     let places = places(&bytes);
-    assert_eq!((places.len(), bytes.parse().unwrap().textures.len()), (4, 1));
+    assert_eq!((places.len(), bytes.parse().unwrap().textures().list.len()), (4, 1));
     for (position, place) in places.concat() {
         assert_eq!(place, [if position[0] > 0 { 10240 } else { 2048 }, if position[1] > 0 { 3072 } else { 11264 }], "{position:?}");
     }
@@ -283,7 +286,7 @@ fn simplified_meshes_keep_their_texture() {
     let (converted, bytes) = model(&floor(20, 3.0), &chequered(8, 1), &options);
     let stream = bytes.parse().unwrap();
     assert!(stream.meshes.len() == 2 && stream.meshes[0].triangles <= 220 && stream.meshes[1].triangles < stream.meshes[0].triangles);
-    assert_eq!(stream.texture_corners.len(), stream.triangles.len());
+    assert_eq!(stream.textures().corners.len(), stream.triangles.len());
     let [part] = &converted.parts[..] else { panic!("{} parts", converted.parts.len()) };
     let first = |k: usize| f64::from(part.vertices.iter().map(|vertex| vertex.position[k]).min().unwrap());
     let (low, wide) = ([first(0), first(1)], -2.0 * first(0));
@@ -316,5 +319,5 @@ fn simplified_triangles_have_room_in_the_texture() {
     assert!(error.contains("a texture would repeat itself 16 times or more") && error.contains("--colours corners"), "{error}");
     let converted = files(&Options { levels: vec![(64, 64)], ..with_textures() }).unwrap();
     let bytes = converted.stream().unwrap();
-    assert!(bytes.parse().unwrap().texture_corners.len() >= 200);
+    assert!(bytes.parse().unwrap().textures().corners.len() >= 200);
 }

@@ -1,6 +1,9 @@
 //! The triangles of one frame that face the viewer, where they lie on the screen, and what shines on them.
 
-use super::scene::{Light, Material, Place, direction};
+use super::{
+    scene::{Light, Material, Place, direction},
+    texture::Texture,
+};
 use embedded_graphics_core::geometry::Size;
 use microphong::{
     Stream,
@@ -53,6 +56,10 @@ pub struct Facet {
     /// Colours of the corners: the part of the ambient and of the diffuse light that is reflected, besides what the material does. `None` if no
     /// mesh of this material has colours; if others have, this one is white.
     pub albedos: Option<[V3; 3]>,
+    /// The texture, if the mesh has one.
+    pub texture: Option<Texture>,
+    /// Whether the facet has the colour of one texel of its texture.
+    pub is_painted: bool,
     /// Unit normal of the plane.
     pub plane: V3,
     /// No interpolated normal is shorter.
@@ -172,7 +179,9 @@ const CLOCKWISE: [usize; 3] = [0, 2, 1];
 fn albedos(stream: Stream<'_>, mesh: &record::Mesh, id: u32) -> Option<[V3; 3]> {
     let Some(MeshColours { palette, corners }) = stream.colours_of(mesh) else {
         // A material has three channels for all of its meshes, or for none.
-        let shares = |other: &record::Mesh| other.material == mesh.material && stream.colours_of(other).is_some();
+        let shares = |other: &record::Mesh| {
+            other.material == mesh.material && (stream.colours_of(other).is_some() || stream.texture_of(other).is_some())
+        };
         return stream.meshes.iter().any(shares).then_some([[1.0; 3]; 3]);
     };
     let colours = corners.get((id - mesh.first_triangle) as usize)?.colours;
@@ -197,14 +206,17 @@ fn facet(stream: Stream<'_>, mesh: &record::Mesh, triangle: &record::Triangle, i
     if (q[0] - p[0]) * (r[1] - p[1]) - (q[1] - p[1]) * (r[0] - p[0]) <= 0 {
         return None;
     }
+    let inv_depth = places.map(|[_, _, depth]| f64::from(depth) / f64::from(DEPTH).exp2());
     Some(Facet {
         screen: places.map(|[x, y, _]| real([x, y], SUBPIXEL)),
-        inv_depth: places.map(|[_, _, depth]| f64::from(depth) / f64::from(DEPTH).exp2()),
+        inv_depth,
         shares: [1.0; 3],
         vertices,
         normals: corners.map(|v| real(v.normal, UNIT)),
         positions: corners.map(|v| real(v.position, UNIT)),
         albedos: albedos(stream, mesh, id),
+        texture: Texture::of(stream, mesh, id, CLOCKWISE, inv_depth),
+        is_painted: false,
         plane: real(triangle.normal, UNIT),
         min_normal_length: f64::from(triangle.min_normal_length) / f64::from(NORMAL_LENGTH).exp2(),
         material: mesh.material.into(),
@@ -230,6 +242,8 @@ impl Facet {
             normals,
             positions,
             albedos: None,
+            texture: None,
+            is_painted: false,
             plane: direction(cross(sub(c, a), sub(b, a))),
             min_normal_length: shortest(&normals),
             material: 0,
@@ -250,9 +264,10 @@ impl Facet {
         parts.map(|part| part / whole)
     }
 
-    /// Whether a quadratic on the screen has its nodes there: without perspective, or if normals bend so little that none is shorter than 1/2.
+    /// Whether a quadratic on the screen has its nodes there: without perspective, or if normals bend so little that none is shorter than 1/2, and there
+    /// is no texture.
     pub(super) fn has_screen_nodes(&self) -> bool {
-        self.shares == [1.0; 3] || self.min_normal_length >= 0.5
+        self.shares == [1.0; 3] || self.min_normal_length >= 0.5 && !self.is_painted
     }
 
     /// Affine coordinates of a point on the screen.

@@ -12,6 +12,7 @@ pub mod papers;
 mod poly;
 mod scanline;
 mod scene;
+mod texture;
 mod visible;
 
 pub use frame::{Facet, Frame};
@@ -20,6 +21,7 @@ pub(crate) use method::angular;
 pub use method::{MOST_OUTCOMES, NAMES, Unsupported, chosen, decides, method, outcomes};
 pub(crate) use poly::{SIX, TEN, cubic, quadratic, sum};
 pub use scene::{Light, Material, Place};
+pub use texture::Texture;
 
 /// Red, green and blue; 255 is full. Clamped to [0, 255].
 pub type Levels = [f64; 3];

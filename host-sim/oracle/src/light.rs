@@ -4,6 +4,7 @@ use super::{
     Levels, Shade,
     frame::{Facet, Frame, SurfacePoint},
     scene::{Light, Material, direction},
+    texture::painted,
 };
 use microphong::math::highlight_lut;
 use microphong_models::vector::{V3, add, dot};
@@ -79,7 +80,7 @@ impl Frame {
     }
 
     /// Light in the channels of the pixels: in greys Rec. 601's luma, by the weights of 8 bits.
-    fn shown(&self, [r, g, b]: V3) -> V3 {
+    pub(super) fn shown(&self, [r, g, b]: V3) -> V3 {
         if self.is_gray { [(77.0 * r + 150.0 * g + 29.0 * b) / 256.0; 3] } else { [r, g, b] }
     }
 
@@ -97,7 +98,8 @@ impl Frame {
                 *channel += strength * (albedo[k] * gains[k] * light.diffuse(diffuse) + highlights[k] * specular);
             }
         }
-        sum.map(|channel| (255.0 * channel).clamp(0.0, 255.0))
+        let most = if facet.is_painted { f64::INFINITY } else { 255.0 };
+        sum.map(|channel| (255.0 * channel).clamp(0.0, most))
     }
 
     /// The level from each light's `[N·L, N·H]`.
@@ -131,6 +133,9 @@ pub(super) fn reflection(light: f64, view: f64, between: f64, exponent: f64) -> 
 /// computed at every point. All other methods approximate it.
 #[must_use]
 pub fn phong<'f>(frame: &'f Frame, facet: &'f Facet) -> Shade<'f> {
+    if let Some(texture) = &facet.texture {
+        return painted(facet, texture, |facet, p| phong(frame, facet)(p));
+    }
     Box::new(move |p| {
         let weights = facet.weights(p);
         let (point, normal) = (facet.point(weights), direction(facet.normal(weights)));

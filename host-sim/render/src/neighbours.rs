@@ -47,6 +47,7 @@ pub fn with_neighbours(stream: &Stream<'_>) -> Result<Vec<u32>> {
     header.cuts = cuts.len() as u32;
     let before = size_of_val(stream.neighbours) + size_of_val(stream.cuts);
     header.length = header.length - before as u32 + (size_of_val(neighbours.as_slice()) + size_of_val(cuts.as_slice())) as u32;
+    let textures = stream.textures();
     let mut bytes = [
         header.as_bytes(),
         meshes.as_bytes(),
@@ -61,9 +62,9 @@ pub fn with_neighbours(stream: &Stream<'_>) -> Result<Vec<u32>> {
         neighbours.as_bytes(),
         stream.corner_colours.as_bytes(),
         stream.colours.as_bytes(),
-        stream.textures.as_bytes(),
-        stream.texture_corners.as_bytes(),
-        stream.texels,
+        textures.list.as_bytes(),
+        textures.corners.as_bytes(),
+        textures.texels,
         stream.labels.as_bytes(),
         stream.names,
     ]

@@ -221,10 +221,11 @@ fn program(scenes: &[(Scene, Vec<(Processor, Shader)>)]) -> board_styles::Progra
         let channels = &Channels::of::<Rgb565>();
         scenes.iter().any(|(scene, _)| scene.stream.parse().is_ok_and(|stream| feature.is_needed_by(&stream, channels)))
     };
-    match (needs(Feature::LightShapes), needs(Feature::VertexColours)) {
-        (true, _) => board_styles::Program::Antialias,
-        (false, true) => board_styles::Program::VERTEX_COLOURS,
-        (false, false) => board_styles::Program::Plain,
+    match () {
+        () if needs(Feature::LightShapes) => board_styles::Program::Antialias,
+        () if needs(Feature::Textures) => board_styles::Program::TEXTURES,
+        () if needs(Feature::VertexColours) => board_styles::Program::VERTEX_COLOURS,
+        () => board_styles::Program::Plain,
     }
 }
 

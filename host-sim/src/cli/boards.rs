@@ -98,7 +98,7 @@ impl Board {
              vertex-colours"
         );
         ensure!(
-            stream.textures.is_empty(),
+            stream.textures().list.is_empty(),
             "the firmware of {name} draws no textures; convert the mesh with --colours none, or write a program with the cargo feature textures"
         );
         let size = Size::new(layout.width as u32, *height as u32);

@@ -105,9 +105,9 @@ pub(crate) fn run(arguments: &Arguments) -> Result<Outcome> {
             objects: stream.instances.len().max(1),
             keys: stream.keys.len(),
             labels: stream.labels.len(),
-            textures: stream.textures.len(),
-            texels: stream.texels.len(),
-            texture_corners: stream.texture_corners.len(),
+            textures: stream.textures().list.len(),
+            texels: stream.textures().texels.len(),
+            texture_corners: stream.textures().corners.len(),
             outlines: Lines::of(&stream),
             levels: levels(&stream),
             bytes: header.length,
@@ -157,13 +157,13 @@ fn text(file: &str, stream: &Stream<'_>, list: &[meshes::Row]) -> Result<()> {
     if !stream.corner_colours.is_empty() {
         row("corners", stream.corner_colours.len(), size_of_val(stream.corner_colours), "triangles with the colours at their corners")?;
     }
-    if !stream.textures.is_empty() {
-        row("textures", stream.textures.len(), size_of_val(stream.textures), "")?;
-        row("texels", stream.texels.len(), stream.texels.len(), "")?;
+    if !stream.textures().list.is_empty() {
+        row("textures", stream.textures().list.len(), size_of_val(stream.textures().list), "")?;
+        row("texels", stream.textures().texels.len(), stream.textures().texels.len(), "")?;
         row(
             "places",
-            stream.texture_corners.len(),
-            size_of_val(stream.texture_corners),
+            stream.textures().corners.len(),
+            size_of_val(stream.textures().corners),
             "triangles with the places of their corners in a texture",
         )?;
     }

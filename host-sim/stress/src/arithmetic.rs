@@ -15,7 +15,7 @@ use microphong::{Stream, renderer};
 use microphong_compare::{UNDECIDED, level};
 use microphong_oracle::{Facet, Frame, Levels, MOST_OUTCOMES, Shade, chosen, decides, method, outcomes};
 use microphong_render::{
-    choices,
+    choices::{self, Chosen, Way},
     render::{self, Format, Style},
     shader::Shader,
 };
@@ -24,6 +24,10 @@ use microphong_render::{
 pub const LIMIT: f64 = 0.5;
 /// Distance, in affine coordinates, at which a pixel's centre counts as on the border of two parts of a triangle. Either part may show there.
 const NUDGE: f64 = 1e-6;
+
+/// How far a place in a texture may be off, in texels: a quarter by its interpolation on the screen, and the rest by the arithmetic of large and thin
+/// triangles.
+const BESIDE: f64 = 0.5;
 
 /// Random scenes, by a random method.
 pub struct Arithmetic;
@@ -170,22 +174,23 @@ pub fn judge(case: &Case) -> Option<Found> {
     Some(found)
 }
 
-/// The shading of all triangles of a frame by a method in floating point. A method that makes choices uses the recorded ones. `None` if the method
-/// cannot shade them.
-fn shades<'f>(case: &Case, stream: Stream<'_>, frame: &'f Frame) -> Option<Vec<Shade<'f>>> {
+/// The ways that a method with a choice takes for the triangles of a stream; none for other methods. `None` if it cannot draw them.
+fn ways(case: &Case, stream: Stream<'_>) -> Option<Vec<Option<Chosen>>> {
     let Style { shader, perspective_correct, .. } = case.style;
     let told = if is_gray(case) {
         choices::by::<Gray8>(shader, stream, case.pixels(), perspective_correct, case.frame)
     } else {
         level::choices(stream, case.pixels(), case.style, case.frame)
     };
-    let told = told.ok()?;
-    let way = |facet: &Facet| told.as_ref()?.ways.get(facet.id as usize).copied().flatten();
-    let shade = |facet: &'f Facet| match way(facet) {
+    Some(told.ok()?.map(|told| told.ways).unwrap_or_default())
+}
+
+/// The shading of a facet by a method in floating point, in the way that it chose. `None` if the method cannot shade it.
+fn shade<'f>(case: &Case, frame: &'f Frame, facet: &'f Facet, ways: &[Option<Chosen>]) -> Option<Shade<'f>> {
+    match ways.get(facet.id as usize).copied().flatten() {
         Some(way) => Some(chosen(frame, facet, way)),
-        None => method(shader.name(), frame, facet).ok(),
-    };
-    frame.facets.iter().map(shade).collect()
+        None => method(case.style.shader.name(), frame, facet).ok(),
+    }
 }
 
 /// Difference of levels of a facet. A material of one hue has one level for all channels, its brightest channel's. Approximation may lift this above
@@ -195,6 +200,23 @@ pub(crate) fn difference(frame: &Frame, facet: &Facet, drawn: [f64; 3], exact: [
     let one = facet.albedos.is_none() && drawn[0] == drawn[1] && drawn[1] == drawn[2];
     let brightest = || frame.only_channel(facet).map_or(exact.into_iter().fold(0.0, f64::max), |channel| exact[channel]);
     if one { all.min((drawn[0] - brightest()).abs()) } else { all }
+}
+
+/// Difference of what is `drawn` from the light of a facet at a point, which is exactly this. The place in a texture may be off, so that the texel is
+/// another one: `beside` shades the facet in the colours of these.
+pub(crate) fn error(
+    frame: &Frame,
+    facet: &Facet,
+    drawn: [f64; 3],
+    (point, exact): ([f64; 2], Levels),
+    beside: impl Fn(&Facet) -> Option<Levels>,
+) -> f64 {
+    let error = difference(frame, facet, drawn, exact);
+    if facet.texture.is_none() || error <= UNDECIDED {
+        return error;
+    }
+    let others = facet.within(point, BESIDE).into_iter();
+    others.filter_map(|facet| Some(difference(frame, &facet, drawn, beside(&facet)?))).fold(error, f64::min)
 }
 
 /// Largest difference of a frame from its method in floating point, in 1/255, before the output format rounds; infinite where a pixel is
@@ -241,7 +263,8 @@ fn levels(case: &Case, stream: Stream<'_>, visible: &[Vec<u32>]) -> Option<Vec<O
 fn pixels(case: &Case, frame: &Frame, visible: &[Vec<u32>]) -> Option<Vec<Pixel>> {
     let shader = case.style.shader;
     let stream = case.stream.parse().ok()?;
-    let shades = shades(case, stream, frame)?;
+    let ways = ways(case, stream)?;
+    let shades: Vec<Shade<'_>> = frame.facets.iter().map(|facet| shade(case, frame, facet, &ways)).collect::<Option<_>>()?;
     let drawn = levels(case, stream, visible)?;
     let rounding = if is_gray(case) { 0.5 } else { 0.0 };
     let mut pixels = Vec::new();
@@ -257,7 +280,18 @@ fn pixels(case: &Case, frame: &Frame, visible: &[Vec<u32>]) -> Option<Vec<Pixel>
         };
         let errors = candidates
             .iter()
-            .map(|&c| (c, difference(frame, &frame.facets[c as usize], levels, shades[c as usize](centre)) - rounding))
+            .map(|&c| {
+                let facet = &frame.facets[c as usize];
+                let beside = |facet: &Facet| Some(shade(case, frame, facet, &ways)?(centre));
+                let mut error = error(frame, facet, levels, (centre, shades[c as usize](centre)), beside);
+                // In perspective, `auto` may interpolate on the screen: what that is off by counts in its budget.
+                let is_linear = ways.get(facet.id as usize).copied().flatten().is_some_and(|chosen| chosen.way == Way::Linear);
+                if error > UNDECIDED && is_linear && facet.shares != [1.0; 3] {
+                    let on_screen = Facet { shares: [1.0; 3], ..facet.clone() };
+                    error = beside(&on_screen).map_or(error, |exact| error.min(difference(frame, facet, levels, exact)));
+                }
+                (c, error - rounding)
+            })
             .collect();
         let mut pixel = Pixel { centre, errors, is_undecidable: false };
         if pixel.least() > UNDECIDED && decides(shader.name()) {

@@ -110,7 +110,7 @@ pub fn judge(case: &Case) -> Option<Found> {
             let (shade, _) = shades.entry(candidate).or_insert_with(|| (phong(&frame, facet), false));
             let is_clear = frame.is_constant() && length(facet.normal(facet.weights(point))) >= SHORT;
             error = error.min(match (is_clear, same) {
-                (true, _) => arithmetic::difference(&frame, facet, levels, shade(point)),
+                (true, _) => arithmetic::error(&frame, facet, levels, (point, shade(point)), |facet| Some(phong(&frame, facet)(point))),
                 (false, true) => 0.0,
                 (false, false) => f64::INFINITY,
             });

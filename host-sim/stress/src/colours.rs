@@ -53,7 +53,7 @@ pub(crate) fn paint(random: &mut Random, parts: &mut [Part]) {
 }
 
 /// A palette of one colour, of few or of many: any ones, extremes, greys, a ramp, or colours that hardly differ.
-fn palette(random: &mut Random) -> Vec<[u8; 3]> {
+pub(crate) fn palette(random: &mut Random) -> Vec<[u8; 3]> {
     let count = match random.pick(0..4) {
         0 => random.pick(1..4),
         1 => random.pick(2..17),

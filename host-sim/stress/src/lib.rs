@@ -21,6 +21,7 @@ pub mod sameness;
 pub mod scenes;
 pub mod shrink;
 pub mod texts;
+mod textures;
 pub mod tiles;
 pub mod walks;
 pub mod watertight;

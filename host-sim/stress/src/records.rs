@@ -76,9 +76,9 @@ impl Records {
             neighbours: stream.neighbours.to_vec(),
             corner_colours: stream.corner_colours.to_vec(),
             colours: stream.colours.to_vec(),
-            textures: stream.textures.to_vec(),
-            texture_corners: stream.texture_corners.to_vec(),
-            texels: stream.texels.to_vec(),
+            textures: stream.textures().list.to_vec(),
+            texture_corners: stream.textures().corners.to_vec(),
+            texels: stream.textures().texels.to_vec(),
             labels: stream.labels.to_vec(),
             names: stream.names.to_vec(),
         }

@@ -1,6 +1,6 @@
 //! Random scenes: meshes, materials, lights and cameras that renderers get wrong.
 
-use crate::{case::Case, colours, random::Random};
+use crate::{case::Case, colours, random::Random, textures};
 use microphong::Skips;
 use microphong_models::{
     bytes::StreamBytes,
@@ -82,10 +82,14 @@ pub fn of(random: &mut Random, mesh: &Mesh, size: [u32; 2], wishes: Wishes) -> O
     drawn(random, mesh, size, &look)
 }
 
-/// A scene, drawn in a random way on a picture of `size`.
+/// A scene, drawn in a random way on a picture of `size`, in about an eighth of all cases with textures.
 pub fn drawn(random: &mut Random, mesh: &Mesh, size: [u32; 2], look: &Look) -> Option<Case> {
     let parts = parts(random, mesh, look)?;
-    Some(styled(random, look.stream(&parts).ok()?, size))
+    let stream = look.stream(&parts).ok()?;
+    // All else of a scene is the same with a texture and without it.
+    let mut aside = random.aside();
+    let textured = if aside.once_in(8) { textures::paint(&mut aside, &stream) } else { None };
+    Some(styled(random, textured.unwrap_or(stream), size))
 }
 
 /// A mesh, now and then with coarser levels, and in about a fifth of all cases with colours at the corners.

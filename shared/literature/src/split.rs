@@ -19,7 +19,7 @@ const BITS: u32 = 16;
 pub struct SubTriangles<'a, 'f> {
     setup: &'a TriangleSetup<'f>,
     shading: &'a Shading<'f>,
-    parts: Parts<'f>,
+    parts: Parts<'a>,
 }
 
 /// Light at the corners of a sub-triangle and at the middles of its edges 01, 12, 20.

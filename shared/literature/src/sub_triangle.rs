@@ -7,7 +7,10 @@
 use microphong::{
     format::{FINE, SPLITS},
     math::vector::zip,
-    method::{Area, Canvas, Field, Gradients, IntensityShader, NEAR, Patch, Plane, ScreenTriangle, Shaded, SpanShader, TriangleSetup},
+    method::{
+        Area, Canvas, Field, Gradients, IntensityShader, NEAR, OnTexture, Patch, PlacePatch, Plane, Sampler, ScreenTriangle, Shaded,
+        SpanShader, TriangleSetup,
+    },
 };
 
 /// Distance from a pixel's border to its centre.
@@ -65,14 +68,15 @@ pub struct Parts<'f> {
     screen: &'f ScreenTriangle,
     gradients: Gradients,
     depth: Plane<1>,
+    texture: Option<(&'f Sampler<'f>, PlacePatch)>,
 }
 
 impl<'f> Parts<'f> {
     /// The parts of the triangle `setup`, each interpolated on its own.
     #[must_use]
-    pub fn new(setup: &TriangleSetup<'f>) -> Self {
+    pub fn new(setup: &'f TriangleSetup<'f>) -> Self {
         let TriangleSetup { screen, gradients, .. } = *setup;
-        Self { screen, gradients: gradients.parted(), depth: screen.plane(gradients, 0) }
+        Self { screen, gradients: gradients.parted(), depth: screen.plane(gradients, 0), texture: setup.texture_patch() }
     }
 }
 
@@ -99,12 +103,17 @@ pub struct Part<'p> {
 
 impl Area for Part<'_> {
     fn draw<F: Field, S: IntensityShader<F::Value>>(&self, field: &F, shader: S, canvas: &mut dyn Canvas) -> u32 {
-        let Parts { screen, gradients, depth } = self.whole;
+        let Parts { screen, gradients, depth, texture } = self.whole;
         let place = ScreenSubTriangle::new(screen, self.sub_triangle);
         if !place.meets(canvas) {
             return 0;
         }
-        let gradients = place.gradients(gradients);
+        let (first, gradients) = (gradients.row(), place.gradients(gradients));
+        if let Some((sampler, mut patch)) = *texture {
+            patch.jump(gradients.row().wrapping_sub(first));
+            let patch = (field.fit(&gradients), patch);
+            return place.draw(gradients.row(), *depth, &mut Shaded::new(patch, OnTexture { sampler, shader }), canvas);
+        }
         place.draw(gradients.row(), *depth, &mut Shaded::new(field.fit(&gradients), shader), canvas)
     }
 }

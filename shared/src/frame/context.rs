@@ -17,7 +17,7 @@ use crate::{
     method::{ErrorBounds, Method, Shading, VertexLight},
     placement::{Placement, Placements},
     scene::{Object, Outlines, Scene},
-    stream::record::{CLOSED_CONVEX, Cut, HAS_COLOURS, Mesh},
+    stream::record::{CLOSED_CONVEX, Cut, Mesh},
 };
 use embedded_graphics_core::geometry::Size;
 
@@ -196,7 +196,7 @@ impl<'r> Context<'r> {
         let light = self.settings.method.facts().vertex_light;
         let reflectance = self.material(placed.material)?;
         let Placement { view, lighting, .. } = placed.placement;
-        let has_colours = [placed.mesh.flags & HAS_COLOURS != 0; COLOURED];
+        let has_colours = [placed.mesh.is_coloured(); COLOURED];
         let mut stage = VertexStage { view, lighting, constant: lighting.constant(), reflectance, light, has_colours };
         if stage.holds_parts() {
             stage.constant = None;

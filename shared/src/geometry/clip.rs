@@ -20,13 +20,16 @@ use heapless::Vec;
 /// Largest number of corners of a triangle that five planes have cut.
 const CORNERS: usize = 3 + PLANES;
 
+/// What the colour of a surface depends on at a corner.
+pub(crate) type Attributes = [[i32; 3]; COLOURED];
+
 /// A corner of the cut polygon.
 #[derive(Clone, Copy, Debug)]
 struct Corner {
     eye: [i32; 3],
     position: [i32; 3],
     normal: [i32; 3],
-    colour: [[i32; 3]; COLOURED],
+    attributes: Attributes,
 }
 
 /// A corner after the cut: the object-space vertex and its place on the screen.
@@ -36,23 +39,23 @@ pub(crate) struct Cut {
     pub vertex: Vertex,
     /// `[x, y, inv_depth]`, see [`crate::geometry::lens::Lens::project`].
     pub place: [i32; 3],
-    /// The colour of the surface, interpolated linearly.
-    pub colour: [[i32; 3]; COLOURED],
+    /// What the colour of the surface depends on, interpolated linearly.
+    pub attributes: Attributes,
 }
 
 /// The part of a triangle that can be projected: a fan around its first corner; empty if there is none.
 #[must_use]
 pub(crate) fn clip(view: &View, vertices: [&Vertex; 3]) -> Vec<Cut, CORNERS> {
-    clip_coloured(view, vertices, [[[0; 3]; 3]; COLOURED])
+    clip_painted(view, vertices, [[[0; 3]; 3]; COLOURED])
 }
 
-/// [`clip`], where the corners have these colours.
+/// [`clip`], where the corners have these attributes.
 #[must_use]
-pub(crate) fn clip_coloured(view: &View, vertices: [&Vertex; 3], colours: [[[i32; 3]; 3]; COLOURED]) -> Vec<Cut, CORNERS> {
+pub(crate) fn clip_painted(view: &View, vertices: [&Vertex; 3], attributes: [[[i32; 3]; 3]; COLOURED]) -> Vec<Cut, CORNERS> {
     let mut polygon = Vec::<Corner, CORNERS>::new();
     for (k, v) in vertices.into_iter().enumerate() {
-        let colour = colours.map(|colours| colours.get(k).copied().unwrap_or_default());
-        let _ = polygon.push(Corner { eye: view.to_eye(v.position), position: wide(v.position), normal: wide(v.normal), colour });
+        let attributes = attributes.map(|attributes| attributes.get(k).copied().unwrap_or_default());
+        let _ = polygon.push(Corner { eye: view.to_eye(v.position), position: wide(v.position), normal: wide(v.normal), attributes });
     }
     for plane in 0..PLANES {
         let mut cut = Vec::new();
@@ -73,7 +76,8 @@ pub(crate) fn clip_coloured(view: &View, vertices: [&Vertex; 3], colours: [[[i32
     for corner in &polygon {
         let normal = normalise(corner.normal).map(|c| ((c + (1 << 15)) >> 16) as i16);
         let (place, _) = view.lens.project(corner.eye);
-        let _ = cuts.push(Cut { vertex: Vertex { position: corner.position.map(|c| c as i16), normal }, place, colour: corner.colour });
+        let _ =
+            cuts.push(Cut { vertex: Vertex { position: corner.position.map(|c| c as i16), normal }, place, attributes: corner.attributes });
     }
     cuts
 }
@@ -85,7 +89,7 @@ pub(crate) fn clip_edge(view: &View, ends: [&Vertex; 2]) -> Option<[[i32; 3]; 2]
         eye: view.to_eye(v.position),
         position: wide(v.position),
         normal: wide(v.normal),
-        colour: [[0; 3]; COLOURED],
+        attributes: [[0; 3]; COLOURED],
     };
     let [mut a, mut b] = ends.map(corner);
     for plane in 0..PLANES {
@@ -111,7 +115,7 @@ fn between(inner: &Corner, outer: &Corner, di: i64, d_o: i64) -> Corner {
         eye: mix(inner.eye, outer.eye, t),
         position: mix(inner.position, outer.position, t),
         normal: mix(inner.normal, outer.normal, t),
-        colour: from_fn(|k| mix(inner.colour[k], outer.colour[k], t)),
+        attributes: from_fn(|k| mix(inner.attributes[k], outer.attributes[k], t)),
     }
 }
 

@@ -37,9 +37,12 @@ pub(crate) const SHARE: u32 = 16;
 const MOST: i32 = (1 << (LEVEL + 9)) - 1;
 
 impl Albedo {
+    /// All light is reflected.
+    pub(crate) const WHITE: Self = Self([u16::MAX; 3]);
+
     /// A colour of a palette. In greys all shares are that of its luma, by the weights of Rec. 601.
     #[inline(always)]
-    fn new(Colour { channels: [r, g, b], .. }: Colour, is_gray: bool) -> Self {
+    pub(crate) fn new(Colour { channels: [r, g, b], .. }: Colour, is_gray: bool) -> Self {
         let [r, g, b] = [r, g, b].map(u32::from);
         // From 255 to 65,535.
         let share = |c: u32| (c * 257) as u16;
@@ -120,6 +123,12 @@ impl Albedo {
 }
 
 impl Parts {
+    /// The parts that [`Self::packed`] has packed. Those of more than 512 have lost fraction bits.
+    pub(crate) fn unpacked([r, g, b, spare]: [i32; 4]) -> Self {
+        let packed = [r, g, b];
+        Self { diffuse: map(packed, |parts| (parts & MOST) << (spare & 31)), specular: map(packed, |parts| (parts as u32 >> SHARE) as i32) }
+    }
+
     /// The parts as a vertex holds them. Where ambient and diffuse light exceed 512, which a dark colour can make visible, their levels have fewer
     /// fraction bits: the fourth number says how many.
     #[inline]

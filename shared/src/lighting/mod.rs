@@ -6,5 +6,6 @@ pub mod highlight_tables;
 pub mod lights;
 pub mod material_tables;
 pub mod reflectance;
+pub mod sampler;
 pub mod shape;
 pub(crate) mod summed;

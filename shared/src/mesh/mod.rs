@@ -5,7 +5,7 @@ mod pass;
 pub(crate) mod vertices;
 
 use crate::{
-    features::COLOURED,
+    features::{COLOURED, TEXTURED},
     geometry::bin::{TriangleKey, Walk},
     lighting::material_tables::MaterialTables,
     method::{DrawTriangle, General, Loops, Middles, Shading, Style, TriangleSetup, needs_general, tiles},
@@ -53,6 +53,7 @@ impl<C: Pixel> Drawing<'_, C> {
             by_canvas: !self.colourist().suits_loops(),
             perspective: *perspective,
             is_coloured: self.pass.stage.is_coloured(),
+            has_texture: self.pass.painting.has_texture(),
         }
     }
 
@@ -123,7 +124,7 @@ impl<C: Pixel> Drawing<'_, C> {
     #[cfg_attr(not(all(target_arch = "arm", not(target_has_atomic = "32"))), inline(always))]
     fn draw_word_sized<L: Loops, const THREE: bool>(&self, triangle: &Triangle, key: u32, band: &mut Band<'_, C>) -> Option<u32> {
         let (by, corners) = turned(self.pass.corners(triangle)?);
-        let albedos = self.pass.corner_colours(triangle, by);
+        let paint = self.pass.paint(triangle, by);
         let place = band.active.take(key);
         let (screen, gradients, needs_depth_test);
         // Decision: continued.
@@ -146,8 +147,10 @@ impl<C: Pixel> Drawing<'_, C> {
             screen: &screen,
             gradients: &gradients,
             corners,
-            albedos: painting::lent(&albedos),
+            albedos: paint.lent(),
             nodes_of_colours: [Middles::IN_SPACE; COLOURED],
+            // No loops draw textures.
+            texture: [None; TEXTURED],
             triangle,
             vertices: self.pass.vertices,
             turned: by,

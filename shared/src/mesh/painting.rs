@@ -1,69 +1,121 @@
-//! The colours at the corners of the triangles of one mesh.
+//! The colours of the triangles of one mesh: at their corners, or by a texture.
+//!
+//! A triangle with a texture has white corners, and so light is computed as for other colours. The texture colours the ambient and diffuse part of it at
+//! each pixel.
 
 use crate::{
-    features::COLOURED,
-    lighting::albedo::{Albedo, IfColoured},
+    features::{COLOURED, TEXTURED},
+    geometry::clip::Attributes,
+    lighting::{
+        albedo::{Albedo, IfColoured},
+        sampler::{IfTextured, Place, Sampler, Textured},
+    },
     raster::triangle::turn,
-    stream::{MeshColours, Stream, record::Mesh},
+    stream::{
+        MeshColours, Stream,
+        record::{Mesh, TextureCorners},
+    },
 };
 use core::array::from_fn;
 
 /// The colours of a mesh, if it has any.
 #[derive(Clone, Copy)]
-pub(crate) struct Painting<'f>(IfColoured<Option<(MeshColours<'f>, bool)>>);
+pub(crate) struct Painting<'f> {
+    colours: IfColoured<Option<(MeshColours<'f>, bool)>>,
+    texture: IfTextured<Option<(Sampler<'f>, &'f [TextureCorners])>>,
+}
 
-/// The colours at the corners of a triangle, if it has any.
-pub(crate) type Corners = IfColoured<Option<[Albedo; 3]>>;
-
-/// A triangle without colours.
-const NONE: Corners = [None; COLOURED];
+/// The colours of a triangle, if it has any. Corners run clockwise on the screen, which is against the order of the stream.
+#[derive(Clone, Copy)]
+pub(crate) struct Paint {
+    albedos: IfColoured<Option<[Albedo; 3]>>,
+    places: IfTextured<Option<[Place; 3]>>,
+}
 
 impl<'f> Painting<'f> {
     /// The colours of `mesh`. Pixel formats of greys take their luma.
     pub(crate) fn of(stream: &Stream<'f>, mesh: &Mesh, is_gray: bool) -> Self {
-        Self([(); COLOURED].map(|()| stream.colours_of(mesh).map(|colours| (colours, is_gray))))
+        Self {
+            colours: [(); COLOURED].map(|()| stream.colours_of(mesh).map(|colours| (colours, is_gray))),
+            texture: [(); TEXTURED].map(|()| stream.texture_of(mesh).map(|texture| Sampler::new(texture, is_gray))),
+        }
     }
 
-    /// The colours at the corners of the triangle of this index, clockwise on the screen, which is against the order of the stream, and turned by `by`.
+    /// Whether the mesh has a texture.
+    pub(super) fn has_texture(&self) -> bool {
+        self.texture.iter().any(Option::is_some)
+    }
+
+    /// The colours of the triangle of this index, whose corners are turned by `by`.
     #[inline(always)]
-    pub(super) fn corners(&self, triangle: impl Fn() -> Option<usize>, by: usize) -> Corners {
+    pub(super) fn corners(&self, triangle: impl Fn() -> Option<usize>, by: usize) -> Paint {
         // Not by `map`, which goes through memory at opt-level "s".
-        let mut corners = NONE;
-        if let (Some(corners), Some(Some((colours, is_gray)))) = (corners.first_mut(), self.0.first()) {
-            *corners = triangle().and_then(|triangle| albedos(colours, *is_gray, triangle, by));
+        let mut paint = Paint { albedos: [None; COLOURED], places: [None; TEXTURED] };
+        if let (Some(albedos), Some(Some((colours, is_gray)))) = (paint.albedos.first_mut(), self.colours.first()) {
+            *albedos = triangle().and_then(|triangle| corner_albedos(colours, *is_gray, triangle, by));
         }
-        corners
+        if let (Some(albedos), Some(places), Some(Some((_, corners)))) =
+            (paint.albedos.first_mut(), paint.places.first_mut(), self.texture.first())
+        {
+            *albedos = Some([Albedo::WHITE; 3]);
+            *places = triangle().and_then(|triangle| places_at(corners.get(triangle)?, by));
+        }
+        paint
+    }
+
+    /// The texture of a triangle with these colours, if it has one. Whether the camera is a perspective one decides how it is interpolated.
+    pub(super) fn texture<'s>(&'s self, paint: &Paint, in_perspective: bool) -> IfTextured<Option<Textured<'s>>> {
+        from_fn(|k| {
+            let (Some((sampler, _)), Some(places)) = (&self.texture[k], paint.places[k]) else { return None };
+            Some(Textured { sampler, places, in_perspective })
+        })
     }
 }
 
 #[inline(always)]
-fn albedos(MeshColours { palette, corners }: &MeshColours<'_>, is_gray: bool, triangle: usize, by: usize) -> Option<[Albedo; 3]> {
+fn corner_albedos(MeshColours { palette, corners }: &MeshColours<'_>, is_gray: bool, triangle: usize, by: usize) -> Option<[Albedo; 3]> {
     let [a, c, b] = corners.get(triangle)?.colours;
     let [i, j, k] = turn([a, b, c], by);
     let colour = |index: u8| palette.get(usize::from(index)).copied();
     Some(Albedo::all([colour(i)?, colour(j)?, colour(k)?], is_gray))
 }
 
-/// Colours in the order of corners that are turned by `by`.
-pub(super) fn turned(mut corners: Corners, by: usize) -> Corners {
-    if let Some(Some(albedos)) = corners.first_mut() {
-        *albedos = turn(*albedos, by);
+fn places_at(&TextureCorners([a, c, b]): &TextureCorners, by: usize) -> Option<[Place; 3]> {
+    Some(turn([a, b, c].map(|place| place.map(i32::from)), by))
+}
+
+impl Paint {
+    /// The colours where corners are turned by `by`.
+    pub(super) fn turned(mut self, by: usize) -> Self {
+        if let Some(Some(albedos)) = self.albedos.first_mut() {
+            *albedos = turn(*albedos, by);
+        }
+        if let Some(Some(places)) = self.places.first_mut() {
+            *places = turn(*places, by);
+        }
+        self
     }
-    corners
-}
 
-/// The shares of each channel at the corners; black if they have no colours.
-pub(super) fn shares(corners: &Corners) -> IfColoured<[[i32; 3]; 3]> {
-    corners.map(|albedos| albedos.map_or([[0; 3]; 3], |albedos| albedos.map(Albedo::shares)))
-}
+    /// What is interpolated where the triangle is clipped: the place in its texture, or the shares of each channel; zero if it has no colours.
+    pub(super) fn attributes(&self) -> IfColoured<[[i32; 3]; 3]> {
+        if let Some(Some(places)) = self.places.first() {
+            return [places.map(|[u, v]| [u, v, 0]); COLOURED];
+        }
+        self.albedos.map(|albedos| albedos.map_or([[0; 3]; 3], |albedos| albedos.map(Albedo::shares)))
+    }
 
-/// The colours of these shares, if the triangle has `corners` with colours.
-pub(super) fn of_shares(corners: &Corners, [a, b, c]: [IfColoured<[i32; 3]>; 3]) -> Corners {
-    from_fn(|k| corners[k].map(|_| [a[k], b[k], c[k]].map(Albedo::of_shares)))
-}
+    /// The colours of a part of the triangle, at whose corners [`Self::attributes`] are these.
+    pub(super) fn of_part(&self, [a, b, c]: [Attributes; 3]) -> Self {
+        if let Some(Some(places)) = self.places.first() {
+            let part: IfColoured<[Place; 3]> = from_fn(|k| [a[k], b[k], c[k]].map(|[u, v, _]| [u, v]));
+            return Self { places: [Some(part.first().copied().unwrap_or(*places)); TEXTURED], ..*self };
+        }
+        Self { albedos: from_fn(|k| self.albedos[k].map(|_| [a[k], b[k], c[k]].map(Albedo::of_shares))), ..*self }
+    }
 
-/// References to what may be there.
-#[inline(always)]
-pub(super) fn lent(corners: &Corners) -> IfColoured<Option<&[Albedo; 3]>> {
-    [corners.first().and_then(Option::as_ref); COLOURED]
+    /// References to the colours of corners.
+    #[inline(always)]
+    pub(super) fn lent(&self) -> IfColoured<Option<&[Albedo; 3]>> {
+        [self.albedos.first().and_then(Option::as_ref); COLOURED]
+    }
 }

@@ -11,7 +11,7 @@ use crate::{
         viewport::{Bounds, Viewport},
     },
     mesh::{
-        painting::{self, Corners, Painting},
+        painting::{Paint, Painting},
         vertices::VertexStage,
     },
     method::{Method, Middles, Shading, TriangleSetup},
@@ -37,7 +37,7 @@ pub(crate) struct MeshPass<'f> {
     pub(crate) first_triangle: u32,
     pub(crate) triangles: &'f [Triangle],
     pub(crate) vertices: &'f [Vertex],
-    /// The colours at the corners of the triangles.
+    /// The colours of the triangles.
     pub(crate) painting: Painting<'f>,
     /// The cached vertices on the screen.
     pub(crate) cached: &'f [ScreenVertex],
@@ -58,7 +58,7 @@ struct MeshTriangle<'f> {
     triangle: &'f Triangle,
     /// The vertices of the mesh, to which the triangle's indices point.
     vertices: &'f [Vertex],
-    albedos: Corners,
+    paint: Paint,
 }
 
 /// The rows of a band, and what draws a triangle there that is set up. It returns the number of its pixels.
@@ -75,9 +75,9 @@ impl MeshPass<'_> {
         key.triangle().wrapping_sub(self.first_triangle) as usize
     }
 
-    /// The colours at the corners of a triangle of the mesh, turned by `by`.
+    /// The colours of a triangle of the mesh, whose corners are turned by `by`.
     #[inline(always)]
-    pub(super) fn corner_colours(&self, triangle: &Triangle, by: usize) -> Corners {
+    pub(super) fn paint(&self, triangle: &Triangle, by: usize) -> Paint {
         self.painting.corners(|| self.triangles.element_offset(triangle), by)
     }
 
@@ -108,27 +108,27 @@ impl MeshPass<'_> {
     /// pixels. The band is `width` pixels wide, and `rows` are its first row and one past its last. Returns the sum.
     pub(super) fn set_up(&self, triangle: &Triangle, width: i32, rows: [i32; 2], draw: &mut dyn FnMut(&TriangleSetup<'_>) -> u32) -> u32 {
         let target = &mut Target { width, rows, draw };
-        let albedos = self.corner_colours(triangle, 0);
+        let paint = self.paint(triangle, 0);
         match self.corners(triangle).filter(is_ready) {
-            Some(corners) => self.set_up_placed(&MeshTriangle { corners, triangle, vertices: self.vertices, albedos }, target),
-            None => self.transform_anew(triangle, albedos, target),
+            Some(corners) => self.set_up_placed(&MeshTriangle { corners, triangle, vertices: self.vertices, paint }, target),
+            None => self.transform_anew(triangle, paint, target),
         }
     }
 
     /// Sets up a triangle with a corner that is not cached or not on the screen: transforms all three corners, and clips the triangle if needed.
     #[cold]
     #[inline(never)]
-    fn transform_anew(&self, triangle: &Triangle, albedos: Corners, target: &mut Target<'_>) -> u32 {
+    fn transform_anew(&self, triangle: &Triangle, paint: Paint, target: &mut Target<'_>) -> u32 {
         let [a, c, b] = triangle.corners.map(|corner| self.vertices.get(usize::from(corner)));
         let (Some(a), Some(b), Some(c)) = (a, b, c) else { return 0 };
         let vertices = [a, b, c];
         let [a, b, c] = &vertices.map(|vertex| self.stage.transform(vertex));
         // Decision: clip.
         if is_ready(&[a, b, c]) {
-            return self.set_up_placed(&MeshTriangle { corners: [a, b, c], triangle, vertices: self.vertices, albedos }, target);
+            return self.set_up_placed(&MeshTriangle { corners: [a, b, c], triangle, vertices: self.vertices, paint }, target);
         }
         // The fan that clipping leaves.
-        let polygon = clip::clip_coloured(self.stage.view, vertices, painting::shares(&albedos));
+        let polygon = clip::clip_painted(self.stage.view, vertices, paint.attributes());
         let place = |cut: &clip::Cut| {
             let [x, y, depth] = cut.place;
             ScreenVertex { x, y, depth, ..self.stage.transform(&cut.vertex) }
@@ -140,8 +140,8 @@ impl MeshPass<'_> {
                 let vertices = [first.vertex, second.vertex, third.vertex];
                 let corners = [&place(first), &place(second), &place(third)];
                 let triangle = &clip::record(triangle, &vertices);
-                let albedos = painting::of_shares(&albedos, [first.colour, second.colour, third.colour]);
-                pixels += self.set_up_placed(&MeshTriangle { corners, triangle, vertices: &vertices, albedos }, target);
+                let paint = paint.of_part([first.attributes, second.attributes, third.attributes]);
+                pixels += self.set_up_placed(&MeshTriangle { corners, triangle, vertices: &vertices, paint }, target);
             }
         }
         pixels
@@ -160,13 +160,14 @@ impl MeshPass<'_> {
         if gradients.is_thinner_than(MAX_FINE_THINNESS) && screen.covers_nothing() {
             return 0;
         }
-        let albedos = painting::turned(placed.albedos, screen.turned);
+        let paint = placed.paint.turned(screen.turned);
         let setup = TriangleSetup {
             screen: &screen,
             gradients: &gradients,
             corners: turn(placed.corners, screen.turned),
-            albedos: painting::lent(&albedos),
+            albedos: paint.lent(),
             nodes_of_colours: [Middles::IN_SPACE; COLOURED],
+            texture: self.painting.texture(&paint, self.stage.view.is_perspective()),
             turned: screen.turned,
             triangle: placed.triangle,
             vertices: placed.vertices,

@@ -1,13 +1,14 @@
 //! Lighting models: how interpolated fields become reflected light at a pixel.
 
 use crate::{
-    features::{COLOURED, PERSPECTIVE, VERTEX_COLOURS},
+    features::{COLOURED, PERSPECTIVE, TEXTURES, VERTEX_COLOURS},
     format::{COSINE, MAX_LIGHTS},
     interpolate::{Constant, Patch, Walker, field::Field, perspective::PerspectivePatch},
     lighting::{
         albedo::{Albedo, IfColoured},
         lights::{SHAPES, Source, cosine},
         reflectance::{Factors, LitMaterial, Reflection},
+        sampler::Sampler,
     },
     math::{
         highlight_lut::{CosineLookup, HighlightLut},
@@ -17,6 +18,7 @@ use crate::{
         Shading, TriangleSetup,
         node::{Node, map_six},
         products::{LinearNodes, QuadraticNodes, fitted, linear, quadratic, signed},
+        texture::PlacePatch,
         weakening::{Change, Way},
     },
     raster::canvas::{CHUNK, Canvas, SpanShader, SpanTarget},
@@ -50,25 +52,53 @@ pub enum Lit<V, D> {
     Fully(V),
 }
 
-/// The colour of a surface over a triangle, as shares of its channels, Q2.30.
+/// The colour of a surface over a triangle.
 struct Coloured<'a, W> {
-    /// Red and green, then blue and nothing.
-    ways: [W; 2],
+    painter: Painter<'a, W>,
     /// Where the sums of all highlights begin.
     dark: [i32; 3],
     /// For a run of pixels, the sums of all highlights.
     highlights: &'a mut [[i32; 3]; CHUNK],
 }
 
+/// What has the colours of the pixels of a triangle.
+enum Painter<'a, W> {
+    /// Its corners: the shares of red and green, then that of blue and nothing, Q2.30.
+    Corners([W; 2]),
+    /// A texture.
+    Texture(&'a Sampler<'a>, PlacePatch),
+}
+
 impl<W: Patch<Walker: Walker<Value = [u32; 2]>>> Coloured<'_, W> {
-    /// Multiplies the sums of ambient and diffuse light of `run` pixels by the colour, and adds highlights. `enter` makes walkers.
-    fn paint(&mut self, levels: &mut [[i32; 3]; CHUNK], run: usize, enter: impl Fn(&W) -> W::Walker) {
-        let mut walkers = self.ways.each_ref().map(enter);
-        for (sums, highlights) in levels.iter_mut().zip(&*self.highlights).take(run).rev() {
-            walkers.iter_mut().for_each(Walker::step);
-            let [[red, green], [blue, _]] = walkers.each_ref().map(Walker::value);
-            let reflected = zip(*sums, [red, green, blue], |level, walked| ((i64::from(level) * share(walked)) >> 16) as i32);
+    /// Multiplies the sums of ambient and diffuse light of the `visible` ones of `run` pixels by the colour, and adds highlights. The runs lie `rows` rows
+    /// below the current one, left of the column `x`.
+    fn paint(&mut self, levels: &mut [[i32; 3]; CHUNK], run: usize, visible: u32, [rows, x]: [i32; 2]) {
+        let light = levels.iter_mut().zip(&*self.highlights).take(run).rev();
+        let reflect = |sums: &mut [i32; 3], highlights: &[i32; 3], shares: [i64; 3]| {
+            let reflected = zip(*sums, shares, |level, share| ((i64::from(level) * share) >> 16) as i32);
             *sums = zip(reflected, *highlights, i32::wrapping_add);
+        };
+        match &self.painter {
+            Painter::Corners(ways) => {
+                let mut walkers = ways.each_ref().map(|way| enter(way, rows, x));
+                for (sums, highlights) in light {
+                    walkers.iter_mut().for_each(Walker::step);
+                    let [[red, green], [blue, _]] = walkers.each_ref().map(Walker::value);
+                    reflect(sums, highlights, map([red, green, blue], share));
+                }
+            }
+            Painter::Texture(sampler, place) if TEXTURES => {
+                let mut walker = enter(place, rows, x);
+                let mut bit = 1 << run;
+                for (sums, highlights) in light {
+                    walker.step();
+                    bit >>= 1;
+                    if visible & bit != 0 {
+                        reflect(sums, highlights, map(sampler.at(walker.value()).shares(), i64::from));
+                    }
+                }
+            }
+            Painter::Texture(..) => {}
         }
     }
 }
@@ -205,7 +235,7 @@ where
                 }
             }
             if let Some(colour) = &mut colour {
-                colour.paint(levels, run, |way| enter(way, rows, entry));
+                colour.paint(levels, run, visible, [rows, entry]);
             }
             for sums in levels.iter_mut().take(run) {
                 let [r, g, b] = intensity(*sums);
@@ -220,6 +250,9 @@ where
         self.lights.iter_mut().for_each(|(_, patch, ..)| patch.jump(rows));
         self.diffuse.iter_mut().for_each(|(patch, ..)| patch.jump(rows));
         self.ways().for_each(|way| way.jump(rows));
+        if let Some(place) = self.place() {
+            place.jump(rows);
+        }
     }
 
     fn step_row(&mut self) {
@@ -227,6 +260,9 @@ where
         self.lights.iter_mut().for_each(|(_, patch, ..)| patch.step_row());
         self.diffuse.iter_mut().for_each(|(patch, ..)| patch.step_row());
         self.ways().for_each(Patch::step_row);
+        if let Some(place) = self.place() {
+            place.step_row();
+        }
     }
 }
 
@@ -235,8 +271,19 @@ impl<'a, 's, K, P, D, W, F, S> ManyLights<'a, 's, K, P, D, W, F, S> {
     fn ways(&mut self) -> impl Iterator<Item = &mut W> + use<'_, 'a, 's, K, P, D, W, F, S> {
         let changes =
             self.lights.iter_mut().flat_map(|(.., changes)| changes).chain(self.diffuse.iter_mut().flat_map(|(.., changes)| changes));
-        let colours = self.colour.iter_mut().flatten().flat_map(|colour| &mut colour.ways);
+        let colours = self.colour.iter_mut().flatten().flat_map(|colour| match &mut colour.painter {
+            Painter::Corners(ways) => ways.as_mut_slice(),
+            Painter::Texture(..) => &mut [],
+        });
         changes.filter_map(Change::way).chain(colours)
+    }
+
+    /// The place in a texture, if there is one.
+    fn place(&mut self) -> Option<&mut PlacePatch> {
+        match self.colour.first_mut()? {
+            Some(Coloured { painter: Painter::Texture(_, place), .. }) if TEXTURES => Some(place),
+            _ => None,
+        }
     }
 }
 
@@ -367,8 +414,11 @@ impl Shading<'_> {
         let dark = zip(ambient, pure, i32::wrapping_sub);
         let mut rooms = room.iter_mut();
         let colour = setup.albedos.map(|albedos| {
-            let ways = ways(&setup.colours_at_nodes(albedos?)).map(&walked);
-            Some(Coloured { ways, dark, highlights: rooms.next()? })
+            let painter = match setup.texture_patch() {
+                Some((sampler, place)) => Painter::Texture(sampler, place),
+                None => Painter::Corners(ways(&setup.colours_at_nodes(albedos?)).map(&walked)),
+            };
+            Some(Coloured { painter, dark, highlights: rooms.next()? })
         });
         let ambient = if setup.albedos().is_some() { pure } else { ambient };
         setup.draw_spans(&mut ManyLights { reflectance, model, common, lights, diffuse, lut, ambient, colour, shared, levels }, canvas)

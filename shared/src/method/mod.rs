@@ -19,18 +19,21 @@ mod perspective;
 #[doc(hidden)]
 pub mod products;
 #[doc(hidden)]
+pub mod texture;
+#[doc(hidden)]
 pub mod tiles;
 mod weakening;
 
 use crate::{
     arch::product::by_fraction,
-    features::{ALWAYS_CONSTANT, COLOURED, COLOURS, PERSPECTIVE, SKIPS},
+    features::{ALWAYS_CONSTANT, COLOURED, COLOURS, PERSPECTIVE, SKIPS, TEXTURES},
     format::{BIAS, CHANNEL, INTENSITY, LEVEL, NORMAL_LENGTH, WALK},
     geometry::viewport::first_centre,
     interpolate::{Checkerboard, perspective::PerspectivePatch},
     lighting::{
         albedo::{Albedo, IfColoured},
         material_tables::MaterialTables,
+        sampler::{IfTextured, Textured},
     },
     pixel::{Pixel, half_step, ramps::Ramps},
     raster::{
@@ -65,6 +68,7 @@ pub use {
         lighting::{
             lights::{Lighting, Source, Viewer, cosine, point},
             reflectance::{Highlight, LitMaterial, Reflectance, Reflection},
+            sampler::Sampler,
         },
         math::highlight_lut::CosineLookup,
         raster::{
@@ -82,6 +86,7 @@ pub use {
     lighting_model::{LightingModel, Lit},
     node::Node,
     products::{LinearNodes, QuadraticNodes, linear, quadratic, signed},
+    texture::{OnTexture, PlacePatch},
 };
 
 /// A shading method: it computes the light of the pixels of a triangle. Implement it for a method of your own, and wrap it
@@ -130,6 +135,8 @@ pub(crate) struct Style {
     pub(crate) perspective: bool,
     /// Whether the corners of triangles have colours.
     pub(crate) is_coloured: bool,
+    /// Whether triangles have a texture, by which no loops draw.
+    pub(crate) has_texture: bool,
 }
 
 impl Style {
@@ -171,7 +178,7 @@ pub(crate) trait Loops {
 /// Whether a program that draws by the loops `L` in the pixel format `C` needs the general loop: for some triangles, or for some styles.
 pub(crate) const fn needs_general<L: Loops, C: Pixel>() -> bool {
     // Of colours, only the curve of a display on three channels that are not light needs a canvas.
-    L::DECLINES || PERSPECTIVE || COLOURS && !C::GRAY && !C::IS_LIGHT
+    L::DECLINES || PERSPECTIVE || TEXTURES || COLOURS && !C::GRAY && !C::IS_LIGHT
 }
 
 /// The type of [`Loops::draw`] in one pixel format.
@@ -234,6 +241,8 @@ pub struct TriangleSetup<'f> {
     pub(crate) albedos: IfColoured<Option<&'f [Albedo; 3]>>,
     /// The middles of the edges where a quadratic on the screen has the nodes of colours.
     pub(crate) nodes_of_colours: IfColoured<Middles>,
+    /// The texture of the triangle, if it has one.
+    pub(crate) texture: IfTextured<Option<Textured<'f>>>,
     /// The triangle's record in the stream.
     #[doc(hidden)]
     pub triangle: &'f Triangle,
@@ -331,10 +340,10 @@ impl TriangleSetup<'_> {
     }
 
     /// Whether a quadratic on the screen can have its nodes there: perspective is off, or no interpolated normal is so short that the rounding of a
-    /// place on an edge would turn it.
+    /// place on an edge would turn it. Light of a triangle with a texture is interpolated in space.
     #[inline(always)]
     pub(crate) fn has_screen_nodes(&self) -> bool {
-        !PERSPECTIVE || self.inv_depth().is_none() || !self.is_curved()
+        !PERSPECTIVE || self.inv_depth().is_none() || !self.is_curved() && !self.has_texture()
     }
 
     /// Whether such a quadratic also serves a root of N·H, which bends more than light: besides, the farthest corner is at most 9/8 as far as the
@@ -487,6 +496,9 @@ pub trait Area {
 /// The whole triangle, in perspective or not.
 impl Area for TriangleSetup<'_> {
     fn draw<F: Field, S: IntensityShader<F::Value>>(&self, field: &F, shader: S, canvas: &mut dyn Canvas) -> u32 {
+        if TEXTURES && self.has_texture() {
+            return self.draw_textured(field, shader, canvas).unwrap_or(0);
+        }
         if PERSPECTIVE && let Some(inv_depth) = self.inv_depth() {
             let patch = PerspectivePatch::new(self.gradients, inv_depth, field.surface());
             return self.draw_spans(&mut Shaded::new(patch, shader), canvas);

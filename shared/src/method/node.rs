@@ -5,7 +5,7 @@ use crate::{
     features::{COLOURED, PERSPECTIVE, VERTEX_COLOURS},
     format::{COSINE, INVERSE_SUM_LENGTH, POSITION, UNIT},
     lighting::{
-        albedo::{Albedo, IfColoured},
+        albedo::{Albedo, IfColoured, Parts},
         lights::{InterpolatedNormal, MeanNormal, UnitNormal, cosine, over_length, point, vertex_cosine},
     },
     math::{
@@ -48,7 +48,7 @@ impl Shading<'_> {
     /// 255.
     pub fn levels(&self, node: &Node) -> [i32; 3] {
         if let Some(albedo) = node.albedo.first().copied().flatten() {
-            return albedo.lit(self.reflectance.parts(self.lighting.incident(node.position, node.normal)));
+            return albedo.lit(self.parts(node));
         }
         if let Some([towards, half]) = self.constant {
             return self.reflectance.one_light([cosine(node.normal, towards), cosine(node.normal, half)]);
@@ -58,6 +58,24 @@ impl Shading<'_> {
 }
 
 impl Shading<'_> {
+    /// The parts of light at `node`.
+    pub(crate) fn parts(&self, node: &Node) -> Parts {
+        self.reflectance.parts(self.lighting.incident(node.position, node.normal))
+    }
+
+    /// The parts of light at the middles of the edges 0-1, 1-2 and 2-0 in space.
+    #[inline(never)]
+    pub(crate) fn middle_parts(&self, setup: &TriangleSetup<'_>) -> [Parts; 3] {
+        if self.lighting.is_constant()
+            && !is_steep(self.exponent)
+            && let Some(normals) = &setup.middle_normals()
+        {
+            return map(normals.each_ref(), |normal| self.reflectance.constant_parts(self.lighting.sources(), normal));
+        }
+        let [.., ab, bc, ca] = setup.six_nodes(self.exponent);
+        [self.parts(&ab), self.parts(&bc), self.parts(&ca)]
+    }
+
     /// Computes the light levels of red, green and blue at the [`Middles`] of the edges 0-1, 1-2 and 2-0. They are Q9.7 from 0 to 255.
     #[inline(never)]
     pub(crate) fn middle_levels(&self, setup: &TriangleSetup<'_>) -> [[i32; 3]; 3] {

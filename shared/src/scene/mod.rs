@@ -50,9 +50,7 @@ use crate::{
     pixel::Channels,
     stream::{
         Stream, is_gain,
-        record::{
-            Camera, HAS_COLOURS, LIGHT_TRACK, Light, Material, Mesh, OBJECT_TRACK, OWN_MATERIALS, PERSPECTIVE, POINT, Track, VIEWER_LOCAL,
-        },
+        record::{Camera, LIGHT_TRACK, Light, Material, Mesh, OBJECT_TRACK, OWN_MATERIALS, PERSPECTIVE, POINT, Track, VIEWER_LOCAL},
     },
 };
 use core::ops::Range;
@@ -307,17 +305,21 @@ impl<'a> Scene<'a> {
 
     /// Meshes with colours at their corners may have other materials, whose tables depend on it.
     fn exchange_materials(&mut self) {
-        if VERTEX_COLOURS && !self.stream.corner_colours.is_empty() {
+        if self.has_colours() {
             self.set_stale();
         }
     }
 
-    /// Whether a mesh with colours at its corners has the material with this index.
+    /// Whether a mesh has colours at its corners, or a texture.
+    fn has_colours(&self) -> bool {
+        VERTEX_COLOURS && !(self.stream.corner_colours.is_empty() && self.stream.header.textures == 0)
+    }
+
+    /// Whether a mesh with colours at its corners, or with a texture, has the material with this index.
     pub(crate) fn is_coloured(&self, material: usize) -> bool {
         let meshes = |object: &Object| self.stream.meshes.get(usize::from(object.meshes().start)..usize::from(object.meshes().end));
-        let is_coloured = |object: &Object, mesh: &Mesh| mesh.flags & HAS_COLOURS != 0 && object.material_of(mesh) == material;
-        VERTEX_COLOURS
-            && !self.stream.corner_colours.is_empty()
+        let is_coloured = |object: &Object, mesh: &Mesh| mesh.is_coloured() && object.material_of(mesh) == material;
+        self.has_colours()
             && self.objects().iter().any(|object| meshes(object).unwrap_or_default().iter().any(|mesh| is_coloured(object, mesh)))
     }
 

@@ -31,12 +31,18 @@ pub const fn check_included(bytes: &[u8]) {
     assert!(u16::from_le_bytes([*v0, *v1]) == VERSION, "the stream has another version; convert the mesh again");
     let length = u32::from_le_bytes([*l0, *l1, *l2, *l3]) as usize;
     assert!(length <= bytes.len(), "the stream is truncated; copy or convert it again");
-    // A large table needs fewer steps for each byte, and each step takes the compiler long.
-    let algorithm = crc::Crc::<u32, crc::Table<16>>::new(&crc::CRC_32_ISO_HDLC);
-    let mut digest = algorithm.digest();
+    let computed = checksum_by_table(bytes.split_at(length).0);
+    assert!(computed == u32::from_le_bytes([*c0, *c1, *c2, *c3]), "the stream is damaged; copy or convert it again");
+}
+
+/// Checksum of a stream, by a large table: it needs fewer steps for each byte, and each step takes the compiler long. Whoever writes streams has the
+/// memory.
+pub(super) const fn checksum_by_table(bytes: &[u8]) -> u32 {
+    static ALGORITHM: crc::Crc<u32, crc::Table<16>> = crc::Crc::<u32, crc::Table<16>>::new(&crc::CRC_32_ISO_HDLC);
+    let mut digest = ALGORITHM.digest();
     digest.update(bytes.split_at(CRC_AT.start).0);
-    digest.update(bytes.split_at(length).0.split_at(CRC_AT.end).1);
-    assert!(digest.finalize() == u32::from_le_bytes([*c0, *c1, *c2, *c3]), "the stream is damaged; copy or convert it again");
+    digest.update(bytes.split_at(CRC_AT.end).1);
+    digest.finalize()
 }
 
 impl<'a> Stream<'a> {

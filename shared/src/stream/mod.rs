@@ -9,6 +9,7 @@ mod names;
 pub mod record;
 
 use crate::{
+    features::{TEXTURED, TEXTURES},
     format::{GeometricError, LARGEST_BUDGET, LEAST_BUDGET, MAX_LIGHTS, NORMAL_LENGTH, ROTATION, UNIT},
     math::vector::{cross, dot},
 };
@@ -77,15 +78,8 @@ pub struct Stream<'a> {
     /// The palettes of all meshes and textures.
     #[doc(hidden)]
     pub colours: &'a [Colour],
-    /// The textures.
-    #[doc(hidden)]
-    pub textures: &'a [Texture],
-    /// Where the triangles of meshes with textures lie in these, one mesh after the other.
-    #[doc(hidden)]
-    pub texture_corners: &'a [TextureCorners],
-    /// The texels of all textures.
-    #[doc(hidden)]
-    pub texels: &'a [u8],
+    /// The textures. A program without the feature has no room for them.
+    textures: [TextureRecords<'a>; TEXTURED],
     /// Texts that are drawn over the picture.
     #[doc(hidden)]
     pub labels: &'a [Label],
@@ -102,6 +96,18 @@ pub struct MeshColours<'a> {
     pub palette: &'a [Colour],
     /// For each triangle.
     pub corners: &'a [CornerColours],
+}
+
+/// The records of textures in a stream.
+#[doc(hidden)]
+#[derive(Clone, Copy, Debug, Default)]
+pub struct TextureRecords<'a> {
+    /// The textures.
+    pub list: &'a [Texture],
+    /// Where the triangles of meshes with textures lie in these, one mesh after the other.
+    pub corners: &'a [TextureCorners],
+    /// The texels of all textures.
+    pub texels: &'a [u8],
 }
 
 /// The texture of a mesh.
@@ -203,7 +209,10 @@ fn checksum(bytes: &[u8]) -> u32 {
 /// Writes the checksum of `bytes` into their header. A program that writes streams does this last.
 #[doc(hidden)]
 pub fn seal(bytes: &mut [u8]) {
-    let crc = checksum(bytes);
+    if bytes.len() < CRC_AT.end {
+        return;
+    }
+    let crc = included::checksum_by_table(bytes);
     if let Some(stored) = bytes.get_mut(CRC_AT) {
         stored.copy_from_slice(&crc.to_le_bytes());
     }
@@ -218,6 +227,20 @@ fn take<'a, T: FromBytes + Immutable + KnownLayout>(bytes: &mut &'a [u8], count:
     let (records, rest) = <[T]>::ref_from_prefix_with_elems(bytes, count).map_err(|_| StreamError::Misaligned)?;
     *bytes = rest;
     Ok(records)
+}
+
+/// Splits the records of textures off the front of `bytes`.
+fn textures<'a>(bytes: &mut &'a [u8], header: &Header) -> Result<[TextureRecords<'a>; TEXTURED], StreamError> {
+    let mut textures = [TextureRecords::default(); TEXTURED];
+    if let Some(TextureRecords { list, corners, texels }) = textures.first_mut() {
+        *list = take(bytes, header.textures.into())?;
+        *corners = take(bytes, header.texture_corners as usize)?;
+        *texels = take(bytes, header.texels as usize)?;
+    } else {
+        let sizes = usize::from(header.textures) * size_of::<Texture>() + header.texture_corners as usize * size_of::<TextureCorners>();
+        let _: &[u8] = take(bytes, sizes + header.texels as usize)?;
+    }
+    Ok(textures)
 }
 
 /// Length in bytes of a stream with the numbers of records in `header`, without names and neighbours; `None` beyond 4 GiB.
@@ -306,9 +329,7 @@ impl<'a> Stream<'a> {
             neighbours: take(&mut rest, neighbours as usize)?,
             corner_colours: take(&mut rest, header.corner_colours as usize)?,
             colours: take(&mut rest, header.colours.into())?,
-            textures: take(&mut rest, header.textures.into())?,
-            texture_corners: take(&mut rest, header.texture_corners as usize)?,
-            texels: take(&mut rest, header.texels as usize)?,
+            textures: textures(&mut rest, header)?,
             labels: take(&mut rest, header.labels.into())?,
             names: rest,
         })
@@ -362,14 +383,16 @@ impl<'a> Stream<'a> {
             let has_neighbours = mesh.flags & HAS_NEIGHBOURS != 0;
             field(has_neighbours != self.neighbours.is_empty() || header.triangles == 0, "mesh neighbours", i)?;
             self.check_colours(mesh, i)?;
-            textured += self.check_texture(mesh, i)?;
+            if TEXTURES {
+                textured += self.check_texture(mesh, i)?;
+            }
             for (k, Neighbours(edges)) in self.neighbours_of(mesh).iter().enumerate() {
                 let exists = |&other: &u16| other & OPEN == OPEN || u32::from(other & OPEN) < mesh.triangles;
                 field(edges.iter().all(exists), "triangle neighbour", mesh.first_triangle as usize + k)?;
             }
         }
         field(next_vertex == header.vertices && next_triangle == header.triangles, "mesh coverage", self.meshes.len())?;
-        field(textured == header.texture_corners, "texture corners", 0)?;
+        field(!TEXTURES || textured == header.texture_corners, "texture corners", 0)?;
         self.check_scene()?;
         for (i, vertex) in self.vertices.iter().enumerate() {
             field(is_one(square(vertex.normal).into(), 2 * UNIT), "vertex normal", i)?;
@@ -514,6 +537,13 @@ impl<'a> Stream<'a> {
         (mesh.flags & HAS_COLOURS != 0).then_some(MeshColours { palette, corners })
     }
 
+    /// The textures; none in a program without the feature.
+    #[doc(hidden)]
+    #[must_use]
+    pub fn textures(&self) -> TextureRecords<'a> {
+        self.textures.first().copied().unwrap_or_default()
+    }
+
     /// The texture of `mesh`, and where its triangles lie in it; `None` if it has none.
     #[doc(hidden)]
     #[must_use]
@@ -521,17 +551,18 @@ impl<'a> Stream<'a> {
         if mesh.flags & HAS_TEXTURE == 0 {
             return None;
         }
-        let &Texture { first_texel, size, palette, .. } = self.textures.get(usize::from(mesh.palette))?;
+        let TextureRecords { list, corners, texels } = self.textures();
+        let &Texture { first_texel, size, palette, .. } = list.get(usize::from(mesh.palette))?;
         let [width, height] = size;
         if width.max(height) > LARGEST_TEXTURE {
             return None;
         }
-        let texels = self.texels.get(first_texel as usize..)?.get(..1 << (width + height))?;
+        let texels = texels.get(first_texel as usize..)?.get(..1 << (width + height))?;
         let palette = self.colours.get(usize::from(palette) * PALETTE..)?;
         // Meshes follow one another in the order of their triangles.
         let before = |other: &&Mesh| other.first_triangle < mesh.first_triangle && other.flags & HAS_TEXTURE != 0;
         let first = self.meshes.iter().filter(before).fold(0u32, |sum, other| sum.saturating_add(other.triangles));
-        let corners = self.texture_corners.get(first as usize..)?.get(..mesh.triangles as usize)?;
+        let corners = corners.get(first as usize..)?.get(..mesh.triangles as usize)?;
         Some(MeshTexture { palette, texels, size, corners })
     }
 

@@ -259,6 +259,12 @@ pub struct Mesh {
 }
 
 impl Mesh {
+    /// Whether the corners of the triangles have colours, or the mesh has a texture.
+    #[inline]
+    pub(crate) fn is_coloured(&self) -> bool {
+        self.flags & (HAS_COLOURS | HAS_TEXTURE) != 0
+    }
+
     /// Returns the largest distance between this level of detail and the full mesh (Hausdorff distance), in units of object space; 0 for a
     /// full mesh.
     #[must_use]

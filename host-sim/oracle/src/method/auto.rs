@@ -5,6 +5,7 @@ use crate::{
     Facet, Frame, Shade,
     frame::SurfacePoint,
     light::{highlight, phong},
+    texture::painted,
 };
 use microphong_render::choices::{Chosen, Way};
 
@@ -31,6 +32,9 @@ pub(super) fn shade<'f, const QUADRATICS: bool>(frame: &'f Frame, facet: &'f Fac
 /// Shades a facet for which the choice is known.
 #[must_use]
 pub fn chosen<'f>(frame: &'f Frame, facet: &'f Facet, Chosen { way, raises }: Chosen) -> Shade<'f> {
+    if let Some(texture) = &facet.texture {
+        return painted(facet, texture, move |facet, p| chosen(frame, facet, Chosen { way, raises })(p));
+    }
     let shade = match way {
         // Under one light in three channels, or on a surface with colours, the core has no levels at the corners, but a cosine and a highlight.
         Way::OneColour => solid(frame, facet, frame.lights.len() == 1 && (facet.albedos.is_some() || frame.only_channel(facet).is_none())),

@@ -23,7 +23,11 @@ mod sqrt6;
 mod taylor;
 mod taylor_finite;
 
-use super::{Facet, Frame, Levels, Shade, light::phong};
+use super::{
+    Facet, Frame, Levels, Shade,
+    light::phong,
+    texture::{painted, painted_whole},
+};
 pub use auto::chosen;
 use std::{cell::RefCell, fmt};
 
@@ -42,12 +46,14 @@ struct Method {
     decides: bool,
     /// Whether the method interpolates along rows of the screen.
     rows: bool,
+    /// Whether the method interpolates the sum of all light, so that a texture colours highlights as well.
+    whole: bool,
     build: Build,
 }
 
 /// A method for every scene that decides nothing.
 const fn any(name: &'static str, build: Build) -> Method {
-    Method { name, constant: false, decides: false, rows: false, build }
+    Method { name, constant: false, decides: false, rows: false, whole: false, build }
 }
 
 /// A method for lights and a viewer that are infinitely far.
@@ -60,6 +66,11 @@ const fn deciding(name: &'static str, build: Build) -> Method {
     Method { decides: true, ..any(name, build) }
 }
 
+/// A method that interpolates the sum of all light.
+const fn whole(method: Method) -> Method {
+    Method { whole: true, ..method }
+}
+
 /// A method that knows rows of the screen, and nothing of perspective.
 const fn by_rows(method: Method) -> Method {
     Method { rows: true, ..method }
@@ -70,13 +81,13 @@ const METHODS: [Method; 28] = [
     deciding("auto-linear", auto::shade::<false>),
     any("flat", |frame, facet, _| flat::shade(frame, facet)),
     any("gouraud", |frame, facet, _| gouraud::shade(frame, facet)),
-    any("gouraud4", |frame, facet, _| gouraud4::shade(frame, facet)),
-    any("pseudo-phong", |frame, facet, _| pseudo_phong::shade(frame, facet)),
+    whole(any("gouraud4", |frame, facet, _| gouraud4::shade(frame, facet))),
+    whole(any("pseudo-phong", |frame, facet, _| pseudo_phong::shade(frame, facet))),
     deciding("highlight-test", highlight_test::shade),
     any("six-point", |frame, facet, _| six_point::shade(frame, facet)),
-    deciding("six-point-centre", six_point_centre::shade),
-    deciding("six-point-adaptive", six_point_adaptive::shade),
-    any("cubic", |frame, facet, _| cubic::shade(frame, facet)),
+    whole(deciding("six-point-centre", six_point_centre::shade)),
+    whole(deciding("six-point-adaptive", six_point_adaptive::shade)),
+    whole(any("cubic", |frame, facet, _| cubic::shade(frame, facet))),
     any("sqrt6", |frame, facet, _| sqrt6::shade(frame, facet)),
     any("renq", |frame, facet, _| renq::shade(frame, facet)),
     any("renq-newton", |frame, facet, _| renq_newton::shade(frame, facet)),
@@ -149,12 +160,24 @@ impl Method {
     }
 }
 
+impl Method {
+    /// The shading of a facet, with a texture or without.
+    fn shade<'f>(&'f self, frame: &'f Frame, facet: &'f Facet, decide: &'f Decide<'f>) -> Shade<'f> {
+        let plain = |facet: &Facet, p| (self.build)(frame, facet, decide)(p);
+        match &facet.texture {
+            None => (self.build)(frame, facet, decide),
+            Some(texture) if self.whole => painted_whole(frame, facet, texture, plain),
+            Some(texture) => painted(facet, texture, plain),
+        }
+    }
+}
+
 /// The shading of `facet` by a method.
 ///
 /// # Errors
 /// When there is no such method, or when it cannot draw this frame.
 pub fn method<'f>(name: &str, frame: &'f Frame, facet: &'f Facet) -> Result<Shade<'f>, Unsupported> {
-    Ok((Method::of(name, frame, facet)?.build)(frame, facet, &|excess| excess > 0.0))
+    Ok(Method::of(name, frame, facet)?.shade(frame, facet, &|excess| excess > 0.0))
 }
 
 /// Largest number of results that [`outcomes`] returns. Eight close decisions have as many. More can occur on small parts of a triangle, where
@@ -187,7 +210,7 @@ pub fn outcomes(name: &str, frame: &Frame, facet: &Facet, point: [f64; 2], margi
             close.push((exceeded, false));
             exceeded
         };
-        outcomes.push((method.build)(frame, facet, &decide)(point));
+        outcomes.push(method.shade(frame, facet, &decide)(point));
         (close, _) = way.into_inner();
         if outcomes.len() == MOST_OUTCOMES {
             return Ok(outcomes);

@@ -161,6 +161,13 @@ fn one_light(setup: &TriangleSetup<'_>, shading: &Shading<'_>, [towards, _]: &Co
         }
     }
     let mut diffuse = limits.diffuse_level(0, lit_range(towards));
+    if setup.has_texture() {
+        // Dark texels leave little of a raise, which may be for a highlight.
+        interval = interval.centred();
+        if interval.half() > budget {
+            return None;
+        }
+    }
     if let Some(albedos) = setup.albedos() {
         let range = Albedo::range(albedos);
         interval = interval.widened(of_product(range, diffuse));

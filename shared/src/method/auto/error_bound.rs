@@ -207,6 +207,13 @@ impl Interval {
         Self { below: self.below + by, above: self.above + by }
     }
 
+    /// The interval with as much below as above.
+    #[inline]
+    pub(crate) fn centred(self) -> Self {
+        let most = self.below.max(self.above);
+        Self { below: most, above: most }
+    }
+
     #[inline]
     fn plus(self, other: Self) -> Self {
         Self { below: self.below + other.below, above: self.above + other.above }

@@ -20,7 +20,11 @@ pub mod highlight_error;
 use crate::{
     format::FULL,
     interpolate::{Constant, by_column::ByColumn},
-    lighting::{albedo::Albedo, material_tables::MaterialTables, reflectance::LitMaterial},
+    lighting::{
+        albedo::{Albedo, Parts},
+        material_tables::MaterialTables,
+        reflectance::{LitMaterial, Reflectance},
+    },
     math::vector::zip,
     method::{
         DrawTriangle, Facts, HighlightField, Loops, Method, RANGE, Shading, Style, TriangleSetup, VertexLight,
@@ -72,13 +76,19 @@ pub fn raises(choice: Choice, setup: &TriangleSetup<'_>, shading: &Shading<'_>) 
     if by_table { reflectance.ramp_rise(raise) } else { [raise; 3] }
 }
 
+/// The parts of light half-way between the extremes at the corners, under one constant light.
+fn half_way_parts(setup: &TriangleSetup<'_>, reflectance: &Reflectance) -> Parts {
+    reflectance.reflected_parts(half_way(setup, 0, 0), half_way(setup, 2, 0) as u32)
+}
+
 /// The means of the smallest and the largest level at the corners, raised.
 #[inline(never)]
 fn middle(setup: &TriangleSetup<'_>, shading: &Shading<'_>, raises: [i32; 3]) -> [i32; 3] {
     let reflectance = shading.reflectance;
     if let Some(albedos) = setup.albedos() {
-        let parts = reflectance.reflected_parts(half_way(setup, 0, 0), half_way(setup, 2, 0) as u32);
-        return zip(Albedo::half_way(albedos).lit(parts), raises, |level, raise| (level + raise).clamp(0, FULL));
+        return zip(Albedo::half_way(albedos).lit(half_way_parts(setup, &reflectance)), raises, |level, raise| {
+            (level + raise).clamp(0, FULL)
+        });
     }
     let levels = match (shading.vertices_have_cosines(), reflectance.three_channels()) {
         // Where one colour is chosen under two lights, no highlight can be seen.
@@ -134,6 +144,9 @@ impl<const QUADRATICS: bool> Method for Auto<QUADRATICS> {
         let reflectance = shading.reflectance;
         let raises = raises(choice, setup, shading);
         match (choice, shading.constant) {
+            // Nothing is raised.
+            (Choice::Solid(_), _) if setup.has_texture() => setup.draw_parts([half_way_parts(setup, &reflectance); 3], canvas),
+            (Choice::Linear(_), _) if setup.has_texture() => setup.draw_parts(gouraud::corner_parts(setup, shading), canvas),
             (Choice::Solid(_), _) => draw_uniform(setup, middle(setup, shading, raises), canvas),
             (Choice::Linear(_), constant) => {
                 let levels = if constant.is_some() { gouraud::reflected(setup, &reflectance) } else { corner_levels(setup, reflectance) };

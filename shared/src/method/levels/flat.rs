@@ -6,7 +6,7 @@ use crate::{
     format::UNIT,
     interpolate::Constant,
     lighting::{
-        albedo::{Albedo, IfColoured},
+        albedo::{Albedo, IfColoured, Parts},
         lights::{MeanNormal, point, vertex_cosine},
         material_tables::MaterialTables,
     },
@@ -32,6 +32,9 @@ impl Method for Flat {
     }
 
     fn shade(&self, setup: &TriangleSetup<'_>, shading: &Shading<'_>, canvas: &mut dyn Canvas) -> u32 {
+        if setup.has_texture() {
+            return setup.draw_parts([parts(setup, shading); 3], canvas);
+        }
         draw_uniform(setup, levels(setup.triangle, setup.vertices, setup.colour_at([1; 3]), shading), canvas)
     }
 }
@@ -69,6 +72,16 @@ fn levels(triangle: &Triangle, vertices: &[Vertex], albedo: IfColoured<Option<Al
         return shading.constant_levels(&MeanNormal::at(normal), albedo);
     }
     shading.levels(&Node { albedo, ..centroid(triangle, vertices, normal) })
+}
+
+/// The parts of light at the centroid with the plane's normal.
+#[inline(never)]
+fn parts(setup: &TriangleSetup<'_>, shading: &Shading<'_>) -> Parts {
+    let normal = wide(setup.triangle.normal);
+    if shading.lighting.is_constant() {
+        return shading.reflectance.constant_parts(shading.lighting.sources(), &MeanNormal::at(normal));
+    }
+    shading.parts(&centroid(setup.triangle, setup.vertices, normal))
 }
 
 /// The triangle's centroid, and the `normal` of its plane (Q2.14).

@@ -9,7 +9,7 @@ use crate::{
     geometry::projection::ScreenVertex,
     interpolate::{by_column::ByColumn, plane::Plane},
     lighting::{
-        albedo::{Albedo, IfColoured},
+        albedo::{Albedo, IfColoured, Parts},
         material_tables::MaterialTables,
         reflectance::Reflectance,
     },
@@ -38,6 +38,9 @@ impl Method for Gouraud {
     }
 
     fn shade(&self, setup: &TriangleSetup<'_>, shading: &Shading<'_>, canvas: &mut dyn Canvas) -> u32 {
+        if setup.has_texture() {
+            return setup.draw_parts(corner_parts(setup, shading), canvas);
+        }
         shading.draw_levels::<3, RANGE>(setup, corner_levels(setup, shading), canvas)
     }
 }
@@ -156,6 +159,14 @@ fn corner_levels(setup: &TriangleSetup<'_>, shading: &Shading<'_>) -> [[i32; 3];
         return reflected(setup, &shading.reflectance);
     }
     setup.levels()
+}
+
+/// The parts of light at the corners of a triangle with a texture.
+pub(crate) fn corner_parts(setup: &TriangleSetup<'_>, shading: &Shading<'_>) -> [Parts; 3] {
+    setup.corners.map(|corner| match (shading.constant, corner.light) {
+        (Some(_), [cosine, _, highlight, _]) => shading.reflectance.reflected_parts(cosine, highlight as u32),
+        (None, packed) => Parts::unpacked(packed),
+    })
 }
 
 /// The levels at the corners under one constant light.

@@ -5,11 +5,12 @@
 
 use crate::{
     interpolate::by_column::ByColumn,
-    lighting::material_tables::MaterialTables,
-    method::{Facts, Loops, Method, RANGE, Shading, Style, TriangleSetup, VertexLight, channels, node::map_six},
+    lighting::{albedo::Parts, material_tables::MaterialTables},
+    method::{Facts, Loops, Method, RANGE, Shading, Style, TriangleSetup, VertexLight, channels, levels::gouraud, node::map_six},
     pixel::Pixel,
     raster::{band::Band, canvas::Canvas},
 };
+use core::array::from_fn;
 
 static FACTS: Facts = Facts {
     name: "six-point",
@@ -28,6 +29,9 @@ impl Method for SixPoint {
     }
 
     fn shade(&self, setup: &TriangleSetup<'_>, shading: &Shading<'_>, canvas: &mut dyn Canvas) -> u32 {
+        if setup.has_texture() {
+            return setup.draw_parts(parts(setup, shading), canvas);
+        }
         let on_screen = setup.on_screen();
         let area = if setup.has_screen_nodes() { &on_screen } else { setup };
         shading.draw_channels::<6, RANGE>(area, &levels(setup, shading), [0; 3], canvas)
@@ -79,6 +83,17 @@ fn reflected(setup: &TriangleSetup<'_>, shading: &Shading<'_>) -> ([i32; 6], [u3
         return (light, [0; 6]);
     }
     (light, map_six(setup.six_half(shading.exponent), |half| shading.reflectance.highlight_at(half)))
+}
+
+/// The parts of light at the six nodes of a triangle with a texture.
+#[inline(never)]
+fn parts(setup: &TriangleSetup<'_>, shading: &Shading<'_>) -> [Parts; 6] {
+    if shading.constant.is_some() {
+        let (cosines, highlights) = reflected(setup, shading);
+        return from_fn(|k| shading.reflectance.reflected_parts(cosines[k], highlights[k]));
+    }
+    let ([a, b, c], [ab, bc, ca]) = (gouraud::corner_parts(setup, shading), shading.middle_parts(setup));
+    [a, b, c, ab, bc, ca]
 }
 
 /// Levels at the six nodes, in three channels.

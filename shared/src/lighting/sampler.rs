@@ -1,0 +1,96 @@
+//! Textures at a pixel: the nearest texel, and its colour.
+
+use crate::{
+    features::TEXTURED,
+    format::{COSINE, TEXTURE},
+    lighting::albedo::Albedo,
+    stream::{
+        MeshTexture,
+        record::{Colour, TextureCorners},
+    },
+};
+
+/// A value for a mesh with a texture: there is room for none in a program without the feature.
+pub(crate) type IfTextured<T> = [T; TEXTURED];
+
+/// A place in a texture: columns to the right and rows downwards, in widths and heights of it, Q4.12.
+pub(crate) type Place = [i32; 2];
+
+/// Fraction bits of a walked place, which is a sixteenth of [`Place`] in the format of cosines.
+const WALKED: u32 = COSINE - 4;
+/// Bits by which a [`Place`] at a corner is shifted to have [`WALKED`] fraction bits.
+pub(crate) const FINER: u32 = WALKED - TEXTURE;
+
+/// A texture, from which pixels take their colours.
+#[derive(Clone, Copy, Debug)]
+pub struct Sampler<'f> {
+    palette: &'f [Colour],
+    texels: &'f [u8],
+    /// The binary logarithms of width and height.
+    size: [u8; 2],
+    is_gray: bool,
+}
+
+/// The texture of a triangle.
+#[derive(Clone, Copy)]
+pub(crate) struct Textured<'f> {
+    pub(crate) sampler: &'f Sampler<'f>,
+    /// Where the corners lie in it.
+    pub(crate) places: [Place; 3],
+    /// Whether the camera is a perspective one.
+    pub(crate) in_perspective: bool,
+}
+
+impl<'f> Sampler<'f> {
+    /// The texture of a mesh, and where its triangles lie in it. Pixel formats of greys take the luma of its colours.
+    pub(crate) fn new(MeshTexture { palette, texels, size, corners }: MeshTexture<'f>, is_gray: bool) -> (Self, &'f [TextureCorners]) {
+        (Self { palette, texels, size, is_gray }, corners)
+    }
+
+    /// The colour at a walked place, which is rounded down to whole texels.
+    #[inline]
+    pub(crate) fn at(&self, [u, v]: [u32; 2]) -> Albedo {
+        let [width, height] = self.size.map(u32::from);
+        let within = |place: u32, bits: u32| (place >> (WALKED - bits)) & ((1 << bits) - 1);
+        let texel = (within(v, height) << width | within(u, width)) as usize;
+        // A checked stream has all texels, and all of their colours.
+        let colour = self.texels.get(texel).and_then(|&index| self.palette.get(usize::from(index)));
+        colour.map_or(Albedo::WHITE, |&colour| Albedo::new(colour, self.is_gray))
+    }
+
+    /// The largest difference between corners at these places, in texels, Q12.3.
+    pub(crate) fn range(&self, &[[u0, v0], [u1, v1], [u2, v2]]: &[Place; 3]) -> u32 {
+        let [width, height] = self.size;
+        let range = |a: i32, b: i32, c: i32, bits: u8| ((a.max(b).max(c) - a.min(b).min(c)) << bits) as u32 >> (TEXTURE - 3);
+        range(u0, u1, u2, width).max(range(v0, v1, v2, height)) + 1
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    /// The texture of two by four texels with a palette of eight greys, which begins with texel 0 on the left of the first row.
+    fn texture(palette: &[Colour; 8]) -> Sampler<'_> {
+        Sampler { palette, texels: &[0, 1, 2, 3, 4, 5, 6, 7], size: [1, 2], is_gray: false }
+    }
+
+    #[test]
+    fn texels_are_found_by_rows_and_repeat() {
+        let palette = core::array::from_fn(|k| Colour { channels: [k as u8; 3], unused: 0 });
+        let at = |u: f64, v: f64| {
+            let place = [u, v].map(|c| (c * f64::from(1u32 << WALKED)) as i64 as u32);
+            let [share, ..] = texture(&palette).at(place).shares();
+            share / 257
+        };
+        assert_eq!([at(0.0, 0.0), at(0.6, 0.0), at(0.0, 0.3), at(0.99, 0.99)], [0, 1, 2, 7]);
+        assert_eq!([at(3.6, 15.0), at(-0.1, -0.1), at(1.0, 2.5)], [1, 7, 4]);
+    }
+
+    #[test]
+    fn ranges_are_in_eighths_of_texels() {
+        let palette = [Colour { channels: [0; 3], unused: 0 }; 8];
+        assert_eq!(texture(&palette).range(&[[0, 0], [1 << 12, 0], [0, 1 << 11]]), 17);
+        assert_eq!(texture(&palette).range(&[[0; 2], [0, 0xFFFF], [0; 2]]), 512);
+    }
+}

@@ -1,0 +1,135 @@
+//! Textures.
+
+use crate::vertex_colours::{CORE, coloured, difference, lights, parts, picture};
+use microphong::{
+    StreamError,
+    stream::record::{Colour, HAS_TEXTURE, Mesh, Texture, TextureCorners},
+};
+use microphong_sim::{
+    board::{Board, build},
+    bytes::StreamBytes,
+    render::Format,
+    scene,
+    shader::Shader,
+    stress::records::Records,
+    verify::{self, Request},
+};
+
+/// The scene `records`, all of whose meshes have a texture of these colours. `place` tells where each vertex lies in it.
+fn textured(mut records: Records, [width, height]: [u8; 2], colours: &[[u8; 3]], place: impl Fn(u16) -> [u16; 2]) -> StreamBytes {
+    records.colours = colours.iter().map(|&channels| Colour { channels, unused: 0 }).collect();
+    records.texels = (0..1usize << (width + height)).map(|texel| (texel % colours.len()) as u8).collect();
+    records.texels.resize(records.texels.len().next_multiple_of(4), 0);
+    records.textures = vec![Texture { first_texel: 0, size: [width, height], palette: 0, unused: 0 }];
+    records.texture_corners = records.triangles.iter().map(|triangle| TextureCorners(triangle.corners.map(&place))).collect();
+    records.meshes.iter_mut().for_each(|mesh| *mesh = Mesh { flags: mesh.flags | HAS_TEXTURE, palette: 0, ..*mesh });
+    records.written().unwrap()
+}
+
+/// A place that differs from vertex to vertex.
+fn anywhere(vertex: u16) -> [u16; 2] {
+    [vertex.wrapping_mul(1_237) % 9_000, vertex.wrapping_mul(3_571) % 9_000]
+}
+
+/// A texture of one colour is one colour at all corners. Light that methods interpolate is rounded otherwise.
+#[test]
+fn one_colour_is_that_of_corners() {
+    for (kind, lights) in lights() {
+        for colour in [[255; 3], [200, 90, 30], [10, 10, 20]] {
+            let plain = || Records { lights: lights.clone(), ..parts("teapot") };
+            let (texture, corners) = (textured(plain(), [3, 1], &[colour], anywhere), coloured(plain(), &[colour], |_, _| 0));
+            for shader in CORE {
+                for format in [Format::Rgb888, Format::Gray8] {
+                    let most = difference(&picture(&texture, shader, format), &picture(&corners, shader, format));
+                    let allowed = 1 + 2 * u8::from(shader.name().starts_with("auto"));
+                    assert!(most <= allowed, "{} by {}, {kind} light: {most}", format.name(), shader.name());
+                }
+            }
+        }
+    }
+}
+
+/// A board draws the bits of this computer.
+#[test]
+fn a_board_draws_the_same_bits() {
+    let board = Board::Mps2An385;
+    let elf = build::styles(board, "rgb565,textures").unwrap();
+    let colours = [[255; 3], [0; 3], [200, 90, 30], [20, 220, 250], [90, 90, 90]];
+    for scene in ["teapot", "dodecahedron"] {
+        for (kind, lights) in lights() {
+            let stream = textured(Records { lights, ..parts(scene) }, [5, 4], &colours, anywhere).as_bytes().to_vec();
+            for shader in CORE {
+                let scene = format!("{scene}, {kind} light, {}", shader.name());
+                let request = Request { board, scene, stream: stream.clone(), firmware_stream: None, shader, frames: 1, antialias: false };
+                verify::checksums(&request, &elf).unwrap();
+            }
+        }
+    }
+}
+
+/// Whatever a texture lacks is an error that names it.
+#[test]
+fn wrong_textures_are_refused() {
+    let right = || Records::of(&textured(parts("dodecahedron"), [2, 2], &[[9; 3]; 16], anywhere).parse().unwrap());
+    let found = |change: &dyn Fn(&mut Records)| {
+        let mut records = right();
+        change(&mut records);
+        match StreamBytes::from(&records.bytes(|_| ())[..]).parse() {
+            Ok(stream) => panic!("{} textures are right", stream.textures().list.len()),
+            Err(StreamError::Field { name, .. }) => name,
+            Err(other) => panic!("{other}"),
+        }
+    };
+    assert!(right().written().is_some());
+    assert_eq!(found(&|records| records.textures[0].size = [9, 0]), "mesh texture");
+    assert_eq!(found(&|records| records.textures[0].size = [3, 2]), "mesh texture");
+    assert_eq!(found(&|records| records.textures[0].first_texel = 4), "mesh texture");
+    assert_eq!(found(&|records| records.textures[0].palette = 2), "mesh texture");
+    assert_eq!(found(&|records| records.meshes[0].palette = 1), "mesh texture");
+    assert_eq!(found(&|records| records.texels[5] = 16), "texel of a mesh");
+    assert_eq!(found(&|records| records.texture_corners.truncate(1)), "mesh texture");
+    assert_eq!(found(&|records| records.texture_corners.push(TextureCorners([[0; 2]; 3]))), "texture corners");
+    assert_eq!(found(&|records| records.texels.truncate(12)), "mesh texture");
+    assert_eq!(found(&|records| records.meshes[0].flags |= 4), "mesh colours");
+}
+
+/// A texture is seen in perspective, whatever the interpolation of light: a checkerboard on a plane that reaches far has the same squares if the plane is
+/// cut into more triangles.
+#[test]
+fn squares_are_seen_in_perspective() {
+    let plane = |cuts: usize| {
+        let mut text = String::new();
+        for row in 0..=cuts {
+            for column in 0..=cuts {
+                let [x, z] = [column, row].map(|k| 2.0 * k as f64 / cuts as f64 - 1.0);
+                text += &format!("v {x} 0 {z}\nvt {} {}\n", (x + 1.0) / 2.0, (z + 1.0) / 2.0);
+            }
+        }
+        for row in 0..cuts {
+            for column in 0..cuts {
+                let a = row * (cuts + 1) + column + 1;
+                let [a, b, c, d] = [a, a + cuts + 1, a + cuts + 2, a + 1];
+                text += &format!("f {a}/{a} {b}/{b} {c}/{c}\nf {a}/{a} {c}/{c} {d}/{d}\n");
+            }
+        }
+        text
+    };
+    let drawn = |cuts: usize| {
+        let folder = tempfile::tempdir().unwrap();
+        let path = folder.path().join("plane.obj");
+        std::fs::write(&path, plane(cuts)).unwrap();
+        let scene = scene::load(path.to_str().unwrap()).unwrap();
+        let records = Records::of(&scene.stream.parse().unwrap());
+        let positions: Vec<[i16; 3]> = records.vertices.iter().map(|vertex| vertex.position).collect();
+        let most = f64::from(positions.iter().flatten().copied().max().unwrap());
+        let place = |vertex: u16| {
+            let [x, _, z] = positions[usize::from(vertex)];
+            [x, z].map(|c| ((f64::from(c) / most + 1.0) * 2_048.0).round().min(4_095.0) as u16)
+        };
+        picture(&textured(records, [3, 3], &[[255; 3], [0; 3], [200, 0, 0]], place), Shader::FLAT, Format::Rgb888)
+    };
+    let (coarse, fine) = (drawn(1), drawn(16));
+    let apart = coarse.chunks(3).zip(fine.chunks(3)).filter(|(one, other)| difference(one, other) > 8).count();
+    let dark = fine.chunks(3).filter(|pixel| pixel.iter().all(|&c| c < 8)).count();
+    assert!(dark > 200 && apart < 200, "{apart} pixels apart of {dark} dark ones");
+}
