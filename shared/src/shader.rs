@@ -114,13 +114,13 @@ impl<C: Pixel> Shader<C> {
         let three_channels = if M::APART && !C::GRAY && COLOURS { TriangleLoops::of::<M, true>() } else { loops };
         let method: &'static dyn Method = if needs_general::<M, C>() { &method.0 } else { method };
         let general = if needs_general::<M, C>() { TriangleLoops::of::<General, false>() } else { loops };
-        Self { method, take: M::take, loops, three_channels, general }
+        Self { method, take: M::takes, loops, three_channels, general }
     }
 
     /// The loops that draw a style.
     pub(crate) fn loops(&self, style: Style) -> TriangleLoops<C> {
         // Decision: style.
-        match ((self.take)(style) && !style.has_texture, style.three_channels) {
+        match ((self.take)(style), style.three_channels) {
             (true, false) => self.loops,
             (true, true) => self.three_channels,
             (false, _) => self.general,

@@ -5,7 +5,7 @@ mod pass;
 pub(crate) mod vertices;
 
 use crate::{
-    features::{COLOURED, TEXTURED},
+    features::COLOURED,
     geometry::bin::{TriangleKey, Walk},
     lighting::material_tables::MaterialTables,
     method::{DrawTriangle, General, Loops, Middles, Shading, Style, TriangleSetup, needs_general, tiles},
@@ -149,8 +149,7 @@ impl<C: Pixel> Drawing<'_, C> {
             corners,
             albedos: paint.lent(),
             nodes_of_colours: [Middles::IN_SPACE; COLOURED],
-            // No loops draw textures.
-            texture: [None; TEXTURED],
+            texture: self.pass.painting.texture(&paint, self.pass.stage.view.is_perspective()),
             triangle,
             vertices: self.pass.vertices,
             turned: by,

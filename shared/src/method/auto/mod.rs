@@ -33,6 +33,7 @@ use crate::{
         cosines::{phong::Phong, sqrt6::SixCosines},
         draw_uniform,
         levels::{gouraud, six_point::SixPoint},
+        texture,
     },
     pixel::Pixel,
     raster::{band::Band, canvas::Canvas, pixel_shader::Solid},
@@ -164,6 +165,7 @@ impl<const QUADRATICS: bool> Method for Auto<QUADRATICS> {
 
 impl<const QUADRATICS: bool> Loops for Auto<QUADRATICS> {
     const APART: bool = true;
+    const TEXTURES: bool = true;
 
     fn take(style: Style) -> bool {
         Phong::take(style)
@@ -180,6 +182,13 @@ impl<const QUADRATICS: bool> Loops for Auto<QUADRATICS> {
         setup.count(band.top, choice.count(&mut band.counts), 1);
         // Under two lights vertices have levels of all channels, where there are three.
         let under_two = THREE && shading.constant.is_none();
+        if setup.has_texture() {
+            return match choice {
+                Choice::Solid(_) => texture::fill(setup, shading, || [half_way_parts(setup, &shading.reflectance); 3], band),
+                Choice::Linear(_) => texture::fill(setup, shading, || gouraud::corner_parts(setup, shading), band),
+                Choice::Quadratic | Choice::Cosines | Choice::Phong => None,
+            };
+        }
         match choice {
             Choice::Solid(raise) => Some(setup.fill(|| Constant, Solid::face(solid(setup, shading, raise, tables)), band)),
             Choice::Linear(raise) if under_two => {

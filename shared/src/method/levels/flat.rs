@@ -11,7 +11,7 @@ use crate::{
         material_tables::MaterialTables,
     },
     math::vector::{add, wide},
-    method::{Facts, Loops, Method, Shading, Style, TriangleSetup, VertexLight, draw_uniform, node::Node},
+    method::{Facts, Loops, Method, Shading, Style, TriangleSetup, VertexLight, draw_uniform, node::Node, texture},
     pixel::Pixel,
     raster::{band::Band, canvas::Canvas, pixel_shader::Solid},
     stream::record::{Triangle, Vertex},
@@ -41,6 +41,7 @@ impl Method for Flat {
 
 impl Loops for Flat {
     const DECLINES: bool = false;
+    const TEXTURES: bool = true;
 
     fn take(style: Style) -> bool {
         !style.by_canvas
@@ -53,6 +54,9 @@ impl Loops for Flat {
         tables: MaterialTables<'_, C>,
         band: &mut Band<'_, C>,
     ) -> Option<u32> {
+        if setup.has_texture() {
+            return texture::fill(setup, shading, || [parts(setup, shading); 3], band);
+        }
         let colour = match shading.constant {
             Some([towards, half]) => {
                 let normal = wide(setup.triangle.normal);

@@ -16,7 +16,7 @@ use crate::{
     math::vector::zip,
     method::{
         Facts, LinearWay, Loops, Method, RANGE, Shading, Style, TriangleSetup, VertexLight, channels, fit_levels, largest_range,
-        node::mixed,
+        node::mixed, texture,
     },
     pixel::Pixel,
     raster::{band::Band, canvas::Canvas, pixel_shader::Ramp},
@@ -48,6 +48,7 @@ impl Method for Gouraud {
 impl Loops for Gouraud {
     const APART: bool = true;
     const DECLINES: bool = false;
+    const TEXTURES: bool = true;
 
     fn take(style: Style) -> bool {
         style.is_plain()
@@ -61,6 +62,9 @@ impl Loops for Gouraud {
         band: &mut Band<'_, C>,
     ) -> Option<u32> {
         let [a, b, c] = setup.corners;
+        if setup.has_texture() {
+            return texture::fill(setup, shading, || corner_parts(setup, shading), band);
+        }
         if PERSPECTIVE {
             match setup.linear_way(|| largest_range(corner_levels(setup, shading))) {
                 LinearWay::Plane => {}
