@@ -26,9 +26,30 @@ pub(crate) const FINER: u32 = WALKED - TEXTURE;
 pub struct Sampler<'f> {
     palette: &'f [Colour],
     texels: &'f [u8],
+    column: Digits,
+    row: Digits,
     /// The binary logarithms of width and height.
     size: [u8; 2],
     is_gray: bool,
+}
+
+/// Where in a walked place the number of a column or of a row stands.
+#[derive(Clone, Copy, Debug)]
+struct Digits {
+    shift: u32,
+    mask: u32,
+}
+
+impl Digits {
+    /// A number of so many bits, which is to stand `left` bits higher in the number of a texel.
+    fn new(bits: u8, left: u8) -> Self {
+        Self { shift: WALKED - u32::from(bits) - u32::from(left), mask: ((1 << bits) - 1) << left }
+    }
+
+    #[inline(always)]
+    fn of(self, place: u32) -> u32 {
+        (place >> (self.shift & 31)) & self.mask
+    }
 }
 
 /// The texture of a triangle.
@@ -44,18 +65,27 @@ pub(crate) struct Textured<'f> {
 impl<'f> Sampler<'f> {
     /// The texture of a mesh, and where its triangles lie in it. Pixel formats of greys take the luma of its colours.
     pub(crate) fn new(MeshTexture { palette, texels, size, corners }: MeshTexture<'f>, is_gray: bool) -> (Self, &'f [TextureCorners]) {
-        (Self { palette, texels, size, is_gray }, corners)
+        (Self::of(palette, texels, size, is_gray), corners)
     }
 
-    /// The colour at a walked place, which is rounded down to whole texels.
-    #[inline]
-    pub(crate) fn at(&self, [u, v]: [u32; 2]) -> Albedo {
-        let [width, height] = self.size.map(u32::from);
-        let within = |place: u32, bits: u32| (place >> (WALKED - bits)) & ((1 << bits) - 1);
-        let texel = (within(v, height) << width | within(u, width)) as usize;
+    fn of(palette: &'f [Colour], texels: &'f [u8], size: [u8; 2], is_gray: bool) -> Self {
+        let [width, height] = size;
+        Self { palette, texels, column: Digits::new(width, 0), row: Digits::new(height, width), size, is_gray }
+    }
+
+    /// The colour of the texel at a walked place, which is rounded down to whole texels.
+    #[inline(always)]
+    pub(crate) fn texel(&self, [u, v]: [u32; 2]) -> Colour {
+        let texel = (self.row.of(v) | self.column.of(u)) as usize;
         // A checked stream has all texels, and all of their colours.
         let colour = self.texels.get(texel).and_then(|&index| self.palette.get(usize::from(index)));
-        colour.map_or(Albedo::WHITE, |&colour| Albedo::new(colour, self.is_gray))
+        *colour.unwrap_or(&Colour { channels: [0; 3], unused: 0 })
+    }
+
+    /// The colour at a walked place, as that of a surface.
+    #[inline]
+    pub(crate) fn at(&self, place: [u32; 2]) -> Albedo {
+        Albedo::new(self.texel(place), self.is_gray)
     }
 
     /// The largest difference between corners at these places, in texels, Q12.3.
@@ -72,7 +102,7 @@ mod tests {
 
     /// The texture of two by four texels with a palette of eight greys, which begins with texel 0 on the left of the first row.
     fn texture(palette: &[Colour; 8]) -> Sampler<'_> {
-        Sampler { palette, texels: &[0, 1, 2, 3, 4, 5, 6, 7], size: [1, 2], is_gray: false }
+        Sampler::of(palette, &[0, 1, 2, 3, 4, 5, 6, 7], [1, 2], false)
     }
 
     #[test]

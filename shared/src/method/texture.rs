@@ -39,6 +39,7 @@ use crate::{
         canvas::{Canvas, Shaded},
         pixel_shader::PixelShader,
     },
+    stream::record::Colour,
 };
 
 /// The place in a texture over a triangle.
@@ -81,22 +82,24 @@ impl TriangleSetup<'_> {
     /// The place in a texture over the triangle.
     #[inline(never)]
     fn place_patch(&self, texture: &Textured<'_>) -> PlacePatch {
-        if let Some(shares) = self.middles_of_places(texture) {
+        let shares = match self.way_of_places(texture) {
+            LinearWay::Plane => Some(Middles::IN_SPACE.shares()),
+            LinearWay::Quadratic(shares) => Some(shares),
+            LinearWay::InSpace => None,
+        };
+        if let Some(shares) = shares {
             return PlacePatch::OnScreen(fitted(&place_nodes(texture, shares), self.gradients));
         }
         let surface = linear(corner_nodes(texture)).surface();
         PlacePatch::InSpace(PerspectivePatch::new(self.gradients, self.corners.map(|corner| corner.depth), surface))
     }
 
-    /// The shares of the edges at which a quadratic on the screen has its nodes; `None` if it would be too far off.
-    fn middles_of_places(&self, Textured { sampler, places, in_perspective }: &Textured<'_>) -> Option<[u16; 3]> {
-        let inv_depth = self.corners.map(|corner| corner.depth);
-        let way = if *in_perspective { perspective::linear_way(inv_depth, sampler.range(places), MOST) } else { LinearWay::Plane };
-        match way {
-            LinearWay::Plane => Some(Middles::IN_SPACE.shares()),
-            LinearWay::Quadratic(shares) => Some(shares),
-            LinearWay::InSpace => None,
+    /// How the place in a texture is interpolated.
+    fn way_of_places(&self, Textured { sampler, places, in_perspective }: &Textured<'_>) -> LinearWay {
+        if !in_perspective {
+            return LinearWay::Plane;
         }
+        perspective::linear_way(self.corners.map(|corner| corner.depth), sampler.range(places), MOST)
     }
 
     /// Draws the triangle, whose light is `field`, by `shader` with the texture. Returns the number of pixels drawn; `None` if it has no texture.
@@ -183,7 +186,7 @@ impl IntensityShader<(([u32; 3], [u32; 3]), [u32; 2])> for OnTexture<'_, Apart> 
 }
 
 /// Draws a triangle with a texture by a loop of its pixel format: interpolated `parts` of light, and a place by a quadratic. `None` if the general loop has
-/// to draw it: in greys, and where a plane on the screen is too far off for the light, or a quadratic for the place.
+/// to draw it: in greys, under more than full intensity, and where a plane on the screen is too far off for the light, or a quadratic for the place.
 #[inline(never)]
 pub(crate) fn fill<C: Pixel>(
     setup: &TriangleSetup<'_>,
@@ -192,22 +195,34 @@ pub(crate) fn fill<C: Pixel>(
     band: &mut Band<'_, C>,
 ) -> Option<u32> {
     let texture = setup.texture.first()?.as_ref()?;
-    let shares = setup.middles_of_places(texture)?;
+    let way = setup.way_of_places(texture);
     let parts = parts();
-    let levels = |part: fn(Parts) -> [i32; 3]| parts.map(part);
-    let (light, highlights) = (levels(|parts| quarters(parts.diffuse)), levels(|parts| map(parts.specular, |level| level.min(FULL))));
+    let light = parts.map(|parts| map(quarters(parts.diffuse), scaled));
+    let highlights = parts.map(|parts| map(parts.specular, |level| level.min(FULL)));
     let range = || largest_range(light).saturating_mul(1 << QUARTER).max(largest_range(highlights));
-    if C::GRAY || !matches!(setup.linear_way(range), LinearWay::Plane) {
+    let is_matt = highlights == [[0; 3]; 3];
+    // The sum at a pixel is less than 512.
+    let most = if is_matt { 510 } else { 257 } << LEVEL >> QUARTER;
+    let is_bright = light.as_flattened().iter().any(|&quarter| quarter >= most);
+    if C::GRAY || is_bright || !matches!(setup.linear_way(range), LinearWay::Plane) {
         return None;
     }
     let fit = |levels| Nodes::<3, 3, RANGE>::new(channels(levels), CHANNEL - LEVEL).fit(setup.gradients);
-    let place = || fitted(&place_nodes(texture, shares), setup.gradients);
+    let plane = || fitted(&linear(corner_nodes(texture)), setup.gradients);
+    let quadric = |shares| fitted(&place_nodes(texture, shares), setup.gradients);
     let pixels = Texels::<C>::new(texture.sampler, shading.reflectance.quarter());
-    Some(if highlights == [[0; 3]; 3] {
-        setup.fill(|| (fit(light), place()), pixels, band)
-    } else {
-        setup.fill(|| ((fit(light), fit(highlights)), place()), pixels, band)
+    Some(match (way, is_matt) {
+        (LinearWay::InSpace, _) => return None,
+        (LinearWay::Plane, true) => setup.fill(|| (fit(light), plane()), pixels, band),
+        (LinearWay::Plane, false) => setup.fill(|| ((fit(light), fit(highlights)), plane()), pixels, band),
+        (LinearWay::Quadratic(shares), true) => setup.fill(|| (fit(light), quadric(shares)), pixels, band),
+        (LinearWay::Quadratic(shares), false) => setup.fill(|| ((fit(light), fit(highlights)), quadric(shares)), pixels, band),
     })
+}
+
+/// A level that is multiplied by a channel of 0 to 255 and divided by 256.
+fn scaled(level: i32) -> i32 {
+    level + ((level + 128) >> 8)
 }
 
 /// Makes pixels of interpolated light and of the texels of a place.
@@ -226,12 +241,14 @@ impl<'f, C: Pixel> Texels<'f, C> {
         Self { sampler, rounding: ByTurns::new([rounding(even), rounding(odd)]) }
     }
 
-    /// The levels that quarters of light leave at a place.
+    /// The levels that [`scaled`] quarters of light leave at a place.
     #[inline(always)]
     fn reflected(&self, quarters: [u32; 3], place: [u32; 2]) -> [i32; 3] {
-        // Q8.8 and Q0.16 make Q8.24, of which a quarter is a whole level with two bits less.
-        let reflect = |quarter: u32, share: i32| ((quarter >> (CHANNEL - 8)).wrapping_mul(share as u32)).min(i32::MAX as u32) as i32;
-        zip(quarters, self.sampler.at(place).shares(), reflect)
+        let Colour { channels: [red, green, blue], .. } = self.sampler.texel(place);
+        let [r, g, b] = quarters;
+        // Q8.16 times eight bits, of which a quarter is a whole level with CHANNEL fraction bits. It is less than 512.
+        let reflect = |quarter: u32, channel: u8| (quarter >> (CHANNEL - 16)).wrapping_mul(channel.into()) as i32;
+        [reflect(r, red), reflect(g, green), reflect(b, blue)]
     }
 
     #[inline(always)]
@@ -261,7 +278,7 @@ impl<C: Pixel> PixelShader<(([u32; 3], [u32; 3]), [u32; 2])> for Texels<'_, C> {
 
     #[inline(always)]
     fn shade(&self, ((light, highlights), place): (([u32; 3], [u32; 3]), [u32; 2])) -> C {
-        self.colour(zip(self.reflected(light, place), highlights, |level, highlight| level.saturating_add(highlight as i32)))
+        self.colour(zip(self.reflected(light, place), highlights, |level, highlight| level.wrapping_add(highlight as i32)))
     }
 }
 
