@@ -498,7 +498,7 @@ fn faces_have_textures_where_colours_at_corners_do_not_suffice() {
     let bytes = StreamBytes::read(&place.0.path().join("out.tri")).expect("a stream");
     let stream = bytes.parse().expect("a stream");
     let seen: Vec<_> = stream.meshes.iter().map(|mesh| stream.texture_of(mesh).map(|texture| texture.corners.len())).collect();
-    assert_eq!((seen, stream.textures.len(), stream.texels.len()), (vec![Some(12), Some(12), None], 1, 64));
+    assert_eq!((seen, stream.textures().list.len(), stream.textures().texels.len()), (vec![Some(12), Some(12), None], 1, 64));
     scene("texture-size = 9\n");
     assert!(place.refuses("a.toml").contains("9 is not possible; use one of 8, 16, 32, 64, 128, 256"));
     scene("colours = \"all\"\n");
