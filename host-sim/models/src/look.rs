@@ -377,7 +377,7 @@ impl Coats {
         let palette = self.palette(&texels.palette)?;
         let number = u8::try_from(self.textures.len())
             .context("too many textures for one stream; join some in one image, or leave textures out by --colours corners")?;
-        self.textures.push(Texture { first_texel: self.texels.len() as u32, size: texels.size, palette, unused: 0 });
+        self.textures.push(Texture { size: texels.size, palette, unused: 0 });
         self.texels.extend_from_slice(&texels.indices);
         self.known.insert(Arc::clone(texels), number);
         Ok(number)

@@ -24,6 +24,7 @@ pub(crate) fn paint(random: &mut Random, stream: &StreamBytes) -> Option<StreamB
     for _ in 0..random.pick(1..3) {
         add(random, &mut records)?;
     }
+    records.texels.resize(records.texels.len().next_multiple_of(4), 0);
     let (mut texture, mut kind) = (None, Kind::AtOnePlace);
     for number in 0..records.meshes.len() {
         // Levels of detail have the texture of their mesh.
@@ -55,7 +56,7 @@ fn add(random: &mut Random, records: &mut Records) -> Option<()> {
     records.colours.resize(next * PALETTE, Colour { channels: [0; 3], unused: 0 });
     records.colours.extend(palette.iter().map(|&channels| Colour { channels, unused: 0 }));
     let size = [(); 2].map(|()| random.pick(0..i32::from(LARGEST_TEXTURE) + 1) as u8);
-    let (first_texel, texels) = (records.texels.len(), 1 << (size[0] + size[1]));
+    let texels = 1 << (size[0] + size[1]);
     let (kind, colours) = (random.pick(0..3), palette.len());
     records.texels.extend((0..texels).map(|texel: usize| {
         let (column, row) = (texel % (1 << size[0]), texel >> size[0]);
@@ -66,8 +67,7 @@ fn add(random: &mut Random, records: &mut Records) -> Option<()> {
         };
         (colour % colours) as u8
     }));
-    records.texels.resize(records.texels.len().next_multiple_of(4), 0);
-    records.textures.push(Texture { first_texel: first_texel as u32, size, palette: u8::try_from(next).ok()?, unused: 0 });
+    records.textures.push(Texture { size, palette: u8::try_from(next).ok()?, unused: 0 });
     Some(())
 }
 

@@ -122,7 +122,7 @@ impl TriangleSetup<'_> {
         Nodes<N, 3, RANGE>: Field<Value = [u32; 3]>,
     {
         let nodes = |levels: [[i32; 3]; N]| Nodes::<N, 3, RANGE>::new(channels(levels), EXTRA).biased([bias(0); 3]);
-        let field = (nodes(parts.map(|parts| quarters(parts.diffuse))), nodes(parts.map(|parts| quarters(parts.specular))));
+        let field = (nodes(parts.map(|parts| part(parts.diffuse, SIXTEENTH))), nodes(parts.map(|parts| part(parts.specular, SIXTEENTH))));
         self.draw_textured(&field, Apart, canvas).unwrap_or(0)
     }
 }
@@ -138,17 +138,20 @@ fn place_nodes(texture: &Textured<'_>, [ab, bc, ca]: [u16; 3]) -> QuadraticNodes
     quadratic(corner_nodes(texture).map(|[a, b, c]| [a, b, c, mixed(a, b, ab), mixed(b, c, bc), mixed(c, a, ca)]))
 }
 
-/// A quarter of a level is walked, because dark texels show more than 255 of ambient and diffuse light, and a quadratic goes beyond its nodes.
+/// A sixteenth of a level is walked, because dark texels show more than 255 of ambient and diffuse light, and a quadratic goes beyond its nodes. It is the
+/// power of two that this is the logarithm of.
+const SIXTEENTH: u32 = 4;
+/// Likewise for loops of a pixel format, which draw no brighter light: a quarter.
 const QUARTER: u32 = 2;
 
-/// A quarter of these levels, as far as they are no more than four times full intensity.
-fn quarters(levels: [i32; 3]) -> [i32; 3] {
-    map(levels, |level| ((level + (1 << (QUARTER - 1))) >> QUARTER).min(FULL))
+/// These levels over a power of two, as far as the result is no more than full intensity.
+fn part(levels: [i32; 3], power: u32) -> [i32; 3] {
+    map(levels, |level| ((level + (1 << (power - 1))) >> power).min(FULL))
 }
 
-/// A walked quarter as an intensity, which may be beyond black and white.
-fn whole(quarter: u32) -> i32 {
-    ((quarter >> (WALK - INTENSITY - QUARTER)) as i32) - (BIAS << (INTENSITY + QUARTER))
+/// A walked sixteenth as an intensity, which may be beyond black and white.
+fn whole(sixteenth: u32) -> i32 {
+    ((sixteenth >> (WALK - INTENSITY - SIXTEENTH)) as i32) - (BIAS << (INTENSITY + SIXTEENTH))
 }
 
 /// Colours the light of another shader by a texture.
@@ -160,11 +163,11 @@ pub struct OnTexture<'f, S> {
     pub shader: S,
 }
 
-/// Interpolated quarters of levels: of ambient and diffuse light, and of highlights.
+/// Interpolated sixteenths of levels: of ambient and diffuse light, and of highlights.
 pub(crate) struct Apart;
 
 impl Albedo {
-    /// What a surface of this colour reflects of an intensity that is less than 2^18.
+    /// What a surface of this colour reflects of an intensity.
     fn reflected(self, light: Intensity) -> Intensity {
         zip(light, self.shares(), |light, share| ((i64::from(light) * i64::from(share) + (1 << (SHARE - 1))) >> SHARE) as i32)
     }
@@ -197,7 +200,7 @@ pub(crate) fn fill<C: Pixel>(
     let texture = setup.texture.first()?.as_ref()?;
     let way = setup.way_of_places(texture);
     let parts = parts();
-    let light = parts.map(|parts| map(quarters(parts.diffuse), scaled));
+    let light = parts.map(|parts| map(part(parts.diffuse, QUARTER), scaled));
     let highlights = parts.map(|parts| map(parts.specular, |level| level.min(FULL)));
     let range = || largest_range(light).saturating_mul(1 << QUARTER).max(largest_range(highlights));
     let is_matt = highlights == [[0; 3]; 3];
@@ -327,4 +330,4 @@ impl Walker for PlaceWalker {
     }
 }
 
-const _: () = assert!(LEVEL >= QUARTER + 4, "a quarter of a level is rounded by at most 1/32 of one");
+const _: () = assert!(LEVEL >= SIXTEENTH + 3, "a sixteenth of a level is rounded by at most 1/16 of one");

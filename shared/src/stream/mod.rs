@@ -79,7 +79,8 @@ pub struct Stream<'a> {
     #[doc(hidden)]
     pub colours: &'a [Colour],
     /// The textures. A program without the feature has no room for them.
-    textures: [TextureRecords<'a>; TEXTURED],
+    #[doc(hidden)]
+    pub textures: [TextureRecords<'a>; TEXTURED],
     /// Texts that are drawn over the picture.
     #[doc(hidden)]
     pub labels: &'a [Label],
@@ -552,12 +553,10 @@ impl<'a> Stream<'a> {
             return None;
         }
         let TextureRecords { list, corners, texels } = self.textures();
-        let &Texture { first_texel, size, palette, .. } = list.get(usize::from(mesh.palette))?;
-        let [width, height] = size;
-        if width.max(height) > LARGEST_TEXTURE {
-            return None;
-        }
-        let texels = texels.get(first_texel as usize..)?.get(..1 << (width + height))?;
+        let (before, texture) = (list.get(..usize::from(mesh.palette))?, list.get(usize::from(mesh.palette))?);
+        let &Texture { size, palette, .. } = texture;
+        let first_texel = before.iter().try_fold(0, |sum: usize, texture| sum.checked_add(texture.texels()?))?;
+        let texels = texels.get(first_texel..)?.get(..texture.texels()?)?;
         let palette = self.colours.get(usize::from(palette) * PALETTE..)?;
         // Meshes follow one another in the order of their triangles.
         let before = |other: &&Mesh| other.first_triangle < mesh.first_triangle && other.flags & HAS_TEXTURE != 0;
@@ -572,6 +571,14 @@ impl<'a> Stream<'a> {
     pub fn neighbours_of(&self, mesh: &Mesh) -> &'a [Neighbours] {
         let all = self.neighbours.get(mesh.first_triangle as usize..).unwrap_or_default();
         all.get(..mesh.triangles as usize).unwrap_or_default()
+    }
+}
+
+impl Texture {
+    /// The number of its texels; `None` if it is too large.
+    fn texels(&self) -> Option<usize> {
+        let [width, height] = self.size;
+        (width.max(height) <= LARGEST_TEXTURE).then(|| 1 << (width + height))
     }
 }
 

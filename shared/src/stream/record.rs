@@ -554,12 +554,11 @@ impl CornerColours {
     }
 }
 
-/// A texture: a picture whose colours take the place of those at corners. It is repeated without end to the right and downwards.
+/// A texture: a picture whose colours take the place of those at corners. It is repeated without end to the right and downwards. A texel is a byte: the
+/// index of a colour of the palette. The texels of all textures follow one another, row by row, each texture's first row first.
 #[derive(FromBytes, IntoBytes, Immutable, KnownLayout, Clone, Copy, Debug, PartialEq, Eq)]
 #[repr(C)]
 pub struct Texture {
-    /// The texture's first texel among those of the stream. A texel is a byte: the index of a colour of the palette. The first row comes first.
-    pub first_texel: u32,
     /// The binary logarithms of width and height, each at most [`LARGEST_TEXTURE`].
     pub size: [u8; 2],
     /// The first [`Colour`] of the palette, in units of [`PALETTE`] colours.
