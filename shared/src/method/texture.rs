@@ -5,19 +5,22 @@
 //!
 //! Ambient and diffuse light is multiplied by the texel, and highlights are added. So methods that interpolate levels interpolate both apart.
 //!
-//! `flat`, `gouraud`, and `auto` where it interpolates between corners draw by a loop of the pixel format. All else goes through the general loop.
+//! `flat`, `gouraud`, and `auto` where it interpolates between corners draw by loops of the pixel format that are here. Under directional lights `phong`
+//! has loops for colours that change from pixel to pixel. All else goes through the general loop.
 
 use crate::{
     features::{PERSPECTIVE, TEXTURES},
     format::{BIAS, CHANNEL, FULL, INTENSITY, Intensity, LEVEL, WALK},
     interpolate::{
         Patch, Walker,
+        by_column::ByColumn,
         field::{Field, Nodes},
         perspective::PerspectivePatch,
         quadric::Quadric,
     },
     lighting::{
         albedo::{Albedo, Parts, SHARE},
+        constant_lights::COLOUR,
         sampler::{FINER, Sampler, Textured},
     },
     math::vector::{map, zip},
@@ -100,6 +103,18 @@ impl TriangleSetup<'_> {
             return LinearWay::Plane;
         }
         perspective::linear_way(self.corners.map(|corner| corner.depth), sampler.range(places), MOST)
+    }
+
+    /// The colours of the texture over the triangle; `None` if it has none, or a quadratic is too far off for the place.
+    #[inline(never)]
+    pub(crate) fn sampled(&self) -> Option<Sampled<'_, ByColumn<Quadric<2>>>> {
+        let texture = self.texture.first()?.as_ref()?;
+        let shares = match self.way_of_places(texture) {
+            LinearWay::Plane => Middles::IN_SPACE.shares(),
+            LinearWay::Quadratic(shares) => shares,
+            LinearWay::InSpace => return None,
+        };
+        Some(Sampled { place: ByColumn(fitted(&place_nodes(texture, shares), self.gradients)), sampler: texture.sampler })
     }
 
     /// Draws the triangle, whose light is `field`, by `shader` with the texture. Returns the number of pixels drawn; `None` if it has no texture.
@@ -212,7 +227,7 @@ pub(crate) fn fill<C: Pixel>(
     }
     let fit = |levels| Nodes::<3, 3, RANGE>::new(channels(levels), CHANNEL - LEVEL).fit(setup.gradients);
     let plane = || fitted(&linear(corner_nodes(texture)), setup.gradients);
-    let quadric = |shares| fitted(&place_nodes(texture, shares), setup.gradients);
+    let quadric = |shares| ByColumn(fitted(&place_nodes(texture, shares), setup.gradients));
     let pixels = Texels::<C>::new(texture.sampler, shading.reflectance.quarter());
     Some(match (way, is_matt) {
         (LinearWay::InSpace, _) => return None,
@@ -282,6 +297,60 @@ impl<C: Pixel> PixelShader<(([u32; 3], [u32; 3]), [u32; 2])> for Texels<'_, C> {
     #[inline(always)]
     fn shade(&self, ((light, highlights), place): (([u32; 3], [u32; 3]), [u32; 2])) -> C {
         self.colour(zip(self.reflected(light, place), highlights, |level, highlight| level.wrapping_add(highlight as i32)))
+    }
+}
+
+/// The colours of a texture at the places of a polynomial: shares of red, green and blue, Q1.[`COLOUR`]. Methods that interpolate such shares between
+/// corners draw textures by the same loops.
+#[derive(Clone, Copy, Debug)]
+pub(crate) struct Sampled<'f, P> {
+    place: P,
+    sampler: &'f Sampler<'f>,
+}
+
+/// Walks a [`Sampled`].
+#[derive(Clone, Copy, Debug)]
+pub(crate) struct SampledWalker<'f, W> {
+    place: W,
+    sampler: &'f Sampler<'f>,
+}
+
+impl<'f, P: Patch<Walker: Walker<Value = [u32; 2]>>> Patch for Sampled<'f, P> {
+    type Walker = SampledWalker<'f, P::Walker>;
+
+    #[inline(always)]
+    fn jump(&mut self, rows: i32) {
+        self.place.jump(rows);
+    }
+
+    #[inline(always)]
+    fn step_row(&mut self) {
+        self.place.step_row();
+    }
+
+    #[inline(always)]
+    fn enter(&self, x: i32) -> Self::Walker {
+        SampledWalker { place: self.place.enter(x), sampler: self.sampler }
+    }
+
+    /// More than there is room for.
+    const WORDS: usize = 1 << 8;
+}
+
+impl<W: Walker<Value = [u32; 2]>> Walker for SampledWalker<'_, W> {
+    type Value = [u32; 3];
+
+    #[inline(always)]
+    fn step(&mut self) {
+        self.place.step();
+    }
+
+    #[inline(always)]
+    fn value(&self) -> [u32; 3] {
+        let Colour { channels: [r, g, b], .. } = self.sampler.texel(self.place.value());
+        // From 255 to 65,535 of 65,536.
+        let share = |channel: u8| u32::from(channel) * (257 << (COLOUR - SHARE));
+        [share(r), share(g), share(b)]
     }
 }
 

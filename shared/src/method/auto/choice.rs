@@ -83,8 +83,8 @@ fn under_two_lights<const QUADRATICS: bool>(setup: &TriangleSetup<'_>, shading: 
 #[inline(never)]
 fn curved<const QUADRATICS: bool>(setup: &TriangleSetup<'_>, shading: &Shading<'_>, curvature: Curvature) -> Choice {
     let two_lights = !shading.vertices_have_cosines();
-    // Of these methods Phong shading alone is exact in perspective.
-    if PERSPECTIVE && setup.inv_depth().is_some() {
+    // Of these methods Phong shading alone is exact in perspective, and has loops for textures.
+    if PERSPECTIVE && setup.inv_depth().is_some() || setup.has_texture() {
         return Choice::Phong;
     }
     let style = if two_lights { 2 } else { usize::from(shading.reflectance.three_channels()) };

@@ -186,7 +186,7 @@ impl<const QUADRATICS: bool> Loops for Auto<QUADRATICS> {
             return match choice {
                 Choice::Solid(_) => texture::fill(setup, shading, || [half_way_parts(setup, &shading.reflectance); 3], band),
                 Choice::Linear(_) => texture::fill(setup, shading, || gouraud::corner_parts(setup, shading), band),
-                Choice::Quadratic | Choice::Cosines | Choice::Phong => None,
+                Choice::Quadratic | Choice::Cosines | Choice::Phong => by::<Phong, _>(setup, shading, tables, band),
             };
         }
         match choice {

@@ -56,6 +56,8 @@ impl Method for Phong {
 }
 
 impl Loops for Phong {
+    const TEXTURES: bool = true;
+
     fn take(style: Style) -> bool {
         Duff::take(style) || near::take(style)
     }

@@ -6,7 +6,7 @@ use crate::{
     features::VERTEX_COLOURS,
     format::FULL,
     interpolate::{
-        Constant,
+        Constant, Patch, Walker,
         by_column::ByColumn,
         field::{Field, Nodes},
         plane::Plane,
@@ -143,6 +143,9 @@ pub(super) fn draw<C: Pixel>(
         && !C::GRAY
         && let Some(albedos) = setup.albedos()
     {
+        if setup.has_texture() {
+            return draw_textured(setup, cosines, lengths, tables, band);
+        }
         return draw_coloured(setup, cosines, lengths, albedos, tables, band);
     }
     // Without a highlight three channels are drawn by a table of colours, which rounds otherwise: that is no matter of leaving it out.
@@ -196,18 +199,44 @@ fn draw_coloured<C: Pixel>(
         }
         return Some(draw_rgb(setup, cosines, lengths, OneLightRgb::of(sums), tables.reflectance.table()?, band));
     }
+    draw_painted(setup, cosines, lengths, || colour(setup, albedos), tables, band)
+}
+
+/// Draws as [`draw_in`] does, on a surface whose `colour` changes from pixel to pixel.
+#[inline(always)]
+fn draw_painted<C: Pixel, P: Patch<Walker: Walker<Value = [u32; 3]>>>(
+    setup: &TriangleSetup<'_>,
+    cosines: &CornerCosines,
+    lengths: &Lengths,
+    colour: impl Fn() -> P,
+    tables: MaterialTables<'_, C>,
+    band: &mut Band<'_, C>,
+) -> Option<u32> {
     let colours = tables.coloured_rgb();
     let (lookup, full) = (QuotientLookup::new(tables.reflectance.table()?), colours.diffuse());
     if setup.leaves_out_highlight(tables.reflectance, &cosines[1]) {
         setup.count(band.top, &mut band.counts.without_highlight, 1);
-        let patch = || ((plane(setup, full, lengths, &cosines[0]), colour(setup, albedos)), lengths.square(setup));
+        let patch = || ((plane(setup, full, lengths, &cosines[0]), colour()), lengths.square(setup));
         return Some(setup.fill(patch, LitShader::of::<Coloured<DiffuseOnly>>(colours, Quotient(HalfRsqrt::get())), band));
     }
     let patch = || {
         let ((diffuse, highlight), square) = patch(setup, full, lookup, cosines, lengths);
-        (((diffuse, highlight), colour(setup, albedos)), square)
+        (((diffuse, highlight), colour()), square)
     };
     Some(setup.fill(patch, LitShader::of::<Coloured<WithHighlight>>(colours, QuotientWithHighlight(lookup, HalfRsqrt::get())), band))
+}
+
+/// Draws as [`draw_in`] does, on a surface with a texture.
+#[inline(never)]
+fn draw_textured<C: Pixel>(
+    setup: &TriangleSetup<'_>,
+    cosines: &CornerCosines,
+    lengths: &Lengths,
+    tables: MaterialTables<'_, C>,
+    band: &mut Band<'_, C>,
+) -> Option<u32> {
+    let sampled = setup.sampled()?;
+    draw_painted(setup, cosines, lengths, || sampled, tables, band)
 }
 
 /// Whether colours can be interpolated by a plane on the screen.

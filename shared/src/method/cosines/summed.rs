@@ -156,6 +156,10 @@ pub(super) fn draw<C: Pixel>(
     setup.count(band.top, &mut band.counts.without_light, without_light);
     let patch = || (sums(setup, lengths, &lights.corners), lengths.square(setup));
     let shader = OneByOne { colours, lookup, lengths: HalfRsqrt::get(), lights, row: setup.gradients.row() };
+    if setup.has_texture() {
+        let sampled = setup.sampled()?;
+        return Some(setup.fill(|| (Column, (sampled, ByColumn(patch()))), shader, band));
+    }
     if VERTEX_COLOURS && let Some(albedos) = setup.albedos() {
         return is_plane(setup, albedos).then(|| setup.fill(|| (Column, ByColumn((colour(setup, albedos), patch()))), shader, band));
     }
