@@ -8,7 +8,7 @@ use embedded_graphics::{
 };
 use microphong::{FramePart, Layout, MAX_SIDE, Material, Picture, RenderError, Renderer, Stats, Stream, renderer::check};
 use microphong_sim::{
-    convert::{AZIMUTH, Converted, DISTANCE, ELEVATION, ORBIT, Options},
+    convert::{AZIMUTH, Converted, DISTANCE, ELEVATION, MARGIN, ORBIT, Options},
     look::Look,
     mesh::Mesh,
     quantise::quantise,
@@ -504,6 +504,26 @@ fn program_layouts_have_room_for_active_triangles() {
             );
         }
     }
+}
+
+/// A frame of more triangles than its lists can hold keeps none from band to band, so no active triangle is of use to it.
+#[test]
+fn frames_of_too_many_triangles_need_no_active_ones() {
+    let side = 200;
+    let place = |k: usize| [k % (side + 1), k / (side + 1)].map(|c| (c as f64 / side as f64 - 0.5) * 1.4);
+    let corners = |at: usize| [[at, at + 1, at + side + 2], [at, at + side + 2, at + side + 1]];
+    let mesh = Mesh {
+        positions: (0..(side + 1) * (side + 1)).map(|k| [place(k)[0], place(k)[1], 0.0]).collect(),
+        normals: vec![[0.0, 0.0, 1.0]; (side + 1) * (side + 1)],
+        triangles: (0..side * side).flat_map(|k| corners(k / side * (side + 1) + k % side)).collect(),
+        ..Mesh::default()
+    };
+    let view = View::orbit(Up::Y, 0.0, 0.0, DISTANCE, 0).fit(&mesh.positions, (1000, 1000), MARGIN);
+    let bytes = Look::new(Options::default().surface, view).stream(&quantise(&mesh).0).unwrap();
+    let (stream, size) = (bytes.parse().unwrap(), Size::new(1000, 1000));
+    let (_, stats) = frame(stream, size, Shader::FLAT, [stream.vertices.len(), stream.triangles.len(), 0], 100);
+    assert!(stats.drawn > 65_535 && stats.passes == 10, "{stats:?}");
+    assert_eq!((stats.set_up_anew, render::fewest_active_triangles(&stream, size, 100).unwrap()), (0, 0));
 }
 
 /// The reserve holds the triangles of a turn that is seen from farther above or from below.

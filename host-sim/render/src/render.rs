@@ -7,7 +7,7 @@ use embedded_graphics_core::{
     pixelcolor::{Bgr565, BinaryColor, Gray2, Gray4, Gray8, Rgb565, Rgb666, Rgb888},
 };
 use microphong::{
-    Layout, Outlines, Renderer, Skips, Stats, Stream,
+    Frame, Layout, Outlines, Renderer, Skips, Stats, Stream,
     pixel::{Channels, FromDrawn, Light, LightGray, PictureCrc, Pixel, PixelFormat, Rgb332, gamma},
 };
 use zerocopy::IntoBytes;
@@ -133,19 +133,36 @@ pub fn fewest_active_triangles(stream: &Stream<'_>, size: Size, band_rows: u32) 
     let mut layout = Layout::new(size.width as usize, band_rows as usize).with_room_for(stream).active_triangles(0);
     let mut band = vec![Gray8::pack([0; 3]); layout.band()];
     let frames = u32::from(stream.header.frames);
-    for number in (0..frames).step_by(frames.div_ceil(COUNTED).max(1) as usize) {
-        loop {
-            let mut memory = vec![0; layout.words::<Gray8>()];
-            let mut renderer = Renderer::with_shader(*stream, size, &layout, &mut memory, Shader::FLAT.on())?;
-            let mut frame = renderer.frame(number);
-            while frame.next_band(&mut band)?.is_some() {}
-            if frame.stats().set_up_anew == 0 {
+    let mut numbers = (0..frames).step_by(frames.div_ceil(COUNTED).max(1) as usize).peekable();
+    while numbers.peek().is_some() {
+        let mut memory = vec![0; layout.words::<Gray8>()];
+        let mut renderer = Renderer::with_shader(*stream, size, &layout, &mut memory, Shader::FLAT.on())?;
+        while let Some(&number) = numbers.peek() {
+            let missing = missing_active_triangles(renderer.frame(number), &mut band)?;
+            if missing > 0 {
+                layout.active_triangles += missing;
                 break;
             }
-            layout.active_triangles += 1;
+            numbers.next();
         }
     }
     Ok(layout.active_triangles)
+}
+
+/// How many active triangles a frame needs at least beyond those that it has: the most triangles that one of its bands could not keep. Each active
+/// triangle more keeps one of them at most.
+fn missing_active_triangles(mut frame: Frame<'_, Gray8>, band: &mut [Gray8]) -> Result<usize> {
+    // A frame of more triangles than its lists can hold goes through all triangles in each band, and keeps none.
+    if frame.stats().passes == 0 {
+        return Ok(0);
+    }
+    let (mut missing, mut before) = (0, 0);
+    while frame.next_band(band)?.is_some() {
+        let set_up_anew = frame.stats().set_up_anew;
+        missing = missing.max(set_up_anew - before);
+        before = set_up_anew;
+    }
+    Ok(missing as usize)
 }
 
 /// The layout for a program that draws a stream in bands of `band_rows` rows: with room for all of it, and for its active triangles. There is room for
