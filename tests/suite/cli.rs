@@ -1,9 +1,13 @@
 //! Wrong input of every kind: the message names the file and the place, the exit code says whose fault it is, nothing is left behind.
 
+use embedded_graphics::geometry::Size;
 use microphong::{Stream, StreamError, renderer::check, stream};
 use microphong_sim::{
     board::Board,
     bytes::StreamBytes,
+    convert::{Converted, Options},
+    levels,
+    program::{self, Features},
     render::{self, Format, Settings, Style},
     scene,
     shader::Shader,
@@ -1097,6 +1101,32 @@ fn convert_says_how_far_to_simplify() {
     assert!(said.contains(&error) && !said.contains("no common chip"), "{said}");
     let said = place.succeeds(&["convert", "large.obj"]);
     assert!(!said.contains("no common chip") && !said.contains("--simplify"), "{said}");
+}
+
+/// Advice for a large mesh is true, although its error is an estimate, and so is advice for a stream with neighbours: the simplified mesh fits the chip.
+#[test]
+fn convert_says_how_far_to_simplify_large_meshes() {
+    let place = Place::new();
+    place.file("large.obj", bowl(190, false)).file("smooth.obj", bowl(102, false));
+    for (name, options, about) in [("large.obj", &[][..], true), ("smooth.obj", &["--antialias"], false)] {
+        let said = place.succeeds(&[&["convert", name, "--json"], options].concat());
+        let remedy = &serde_json::from_str::<serde_json::Value>(&said).expect("JSON")["remedy"];
+        assert_eq!((&remedy["fits"], &remedy["is_estimate"]), (&"rp2350".into(), &about.into()), "{remedy}");
+        assert!((1e-5..0.01).contains(&remedy["error"].as_f64().expect("an error")), "{remedy}");
+
+        let whole = Converted::read(&place.0.path().join(name), &Options::default(), &()).expect("a mesh");
+        let most = remedy["triangles"].as_u64().expect("a number") as usize;
+        let parts = levels::reduced(&whole.mesh, &whole.whole, most).expect("a simplified mesh");
+        let bytes = whole.look.stream(&parts).expect("a stream");
+        let bytes = if options.is_empty() { bytes } else { bytes.with_neighbours().expect("neighbours") };
+        let stream = bytes.parse().expect("a stream");
+        let layout = render::program_layout(&stream, Shader::AUTO, Size::new(320, 240), 16).expect("a layout");
+        let taken = [bytes.as_bytes().len(), Format::Rgb565.bytes(&layout).iter().sum()];
+        let needed = Features::needed_by(&stream, Format::Rgb565);
+        let loads = program::loads(needed, Shader::AUTO, Format::Rgb565, taken).expect("loads");
+        let (_, load) = loads.into_iter().find(|(chip, _)| chip.name == "rp2350").expect("the chip");
+        assert!((0.9..=1.0).contains(&load), "{name}: {load}");
+    }
 }
 
 /// `convert` ends with what a frame takes on boards where that is asked for, and refuses a board that it cannot count on before it writes.

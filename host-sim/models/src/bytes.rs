@@ -108,7 +108,17 @@ impl StreamBytes {
         }
         let words = with_neighbours(&stream)?;
         let (header, _) = Header::ref_from_prefix(words.as_bytes()).map_err(|_| anyhow!("the stream has no header"))?;
-        Ok(Self { length: header.length as usize, words })
+        let changed = Self { length: header.length as usize, words };
+        changed.parse()?;
+        Ok(changed)
+    }
+
+    /// The view of bytes that are known to be a stream, because they are unchanged since they were checked.
+    ///
+    /// # Errors
+    /// Errors of [`Stream::parse_included`].
+    pub fn view(&self) -> Result<Stream<'_>, StreamError> {
+        Stream::parse_included(self.as_bytes())
     }
 
     /// The checked view of the bytes.

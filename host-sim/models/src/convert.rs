@@ -153,6 +153,8 @@ pub struct Converted {
     pub faults: Vec<String>,
     /// What a user should know of the file, in sentences; wrong elements are among it.
     pub remarks: Vec<String>,
+    /// The meshes before simplification, without coarser levels.
+    pub whole: Vec<Part>,
     /// The meshes of the stream, with coarser levels.
     pub parts: Vec<Part>,
     /// Triangles that vanish when positions are rounded.
@@ -197,7 +199,8 @@ impl Converted {
             mesh.merge_objects();
             objects.clear();
         }
-        let (mut parts, lost) = quantise(&mesh);
+        let (whole, lost) = quantise(&mesh);
+        let mut parts = whole.clone();
         let view = options.view.fit(&mesh.positions, options.size, MARGIN);
         let mut look = Look {
             objects,
@@ -217,23 +220,27 @@ impl Converted {
         let errors = look.tolerances(&parts, &options.levels);
         steps.begin("searching levels of detail", parts.len() * errors.len());
         levels::add(&mesh, &mut parts, &errors, &|| steps.step()).with_context(place)?;
-        Ok(Self { mesh, report, materials, faults, remarks, parts, lost, look, simplified, painted, backs })
+        Ok(Self { mesh, report, materials, faults, remarks, whole, parts, lost, look, simplified, painted, backs })
     }
 
-    /// The largest simplified mesh, to within a 64th, for whose stream there is room; `None` if there is none. `load` is the share of the room that a
-    /// stream takes. The mesh as it is must take more than all of it.
+    /// The largest simplified mesh, to within a 64th, for whose stream there is room; `None` if there is none. `whole_load` is the share of the room
+    /// that the stream takes without simplification, and must be more than 1. `load` is the share of another stream.
     ///
     /// # Errors
     /// When `load` fails, or no stream can be made.
-    pub fn largest(&self, options: &Options, load: &dyn Fn(&StreamBytes) -> Result<f64>, steps: &dyn Steps) -> Result<Option<Largest>> {
+    pub fn largest(
+        &self,
+        options: &Options,
+        (whole_load, load): (f64, &dyn Fn(StreamBytes) -> Result<f64>),
+        steps: &dyn Steps,
+    ) -> Result<Option<Largest>> {
         /// The load to aim at, a little less than all.
         const AIM: f64 = 1.0 - 1.0 / 256.0;
         const ENOUGH: f64 = 1.0 - 1.0 / 64.0;
-        let (whole, _) = quantise(&self.mesh);
         let (mut too_few, mut too_many) = (0, levels::count(&self.parts));
         let mut largest = None;
         // Loads are nearly linear in the number of triangles: the next number is where the line through the last two loads meets the aim.
-        let mut last = [(0.0, 0.0), (too_many as f64, load(&self.stream()?)?)];
+        let mut last = [(0.0, 0.0), (too_many as f64, whole_load)];
         steps.begin("searching the largest mesh that fits", SEARCH);
         let mut expected = 0..SEARCH;
         while too_many - too_few > 1 + too_few / 64 {
@@ -241,13 +248,13 @@ impl Converted {
             let guess = (first + (AIM - first_load) * (second - first) / (second_load - first_load)) as usize;
             let most = if guess > too_few && guess < too_many { guess } else { too_few.midpoint(too_many) };
             // Some meshes cannot be made of so few.
-            let Ok(parts) = levels::reduced(&self.mesh, &whole, most) else {
+            let Ok(parts) = levels::reduced(&self.mesh, &self.whole, most) else {
                 too_few = most;
                 continue;
             };
             let mut with_levels = parts.clone();
             levels::add(&self.mesh, &mut with_levels, &self.look.tolerances(&parts, &options.levels), &|| ())?;
-            let load = load(&self.look.stream(&with_levels)?)?;
+            let load = load(self.look.stream(&with_levels)?)?;
             last = [last[1], (most as f64, load)];
             if expected.next().is_some() {
                 steps.step();
@@ -263,8 +270,8 @@ impl Converted {
             }
         }
         let measured = |(most, parts): (usize, Vec<Part>)| {
-            steps.begin("measuring how far it is from the whole mesh", whole.len());
-            Largest { most, simplified: levels::difference(&whole, &parts, &|| steps.step()), parts }
+            steps.begin("measuring how far it is from the whole mesh", self.whole.len());
+            Largest { most, simplified: levels::estimate(&self.whole, &parts, &|| steps.step()), parts }
         };
         Ok(largest.map(measured))
     }

@@ -23,6 +23,15 @@ pub fn hausdorff(one: &[Corners], other: &[Corners], [least, most]: [f64; 2]) ->
     Some(search.bound).filter(|&bound| bound <= most)
 }
 
+/// Upper bound of the distance of all points of some triangles from a surface, with the error of [`hausdorff`]. The result is at least `least`, which
+/// must be above 0.
+#[must_use]
+pub fn farthest(from: &[Corners], surface: &[Corners], least: f64) -> f64 {
+    let mut search = Search { bound: least, most: f64::INFINITY };
+    search.raise(&mut from.to_vec(), &surface.iter().collect::<Vec<_>>());
+    search.bound
+}
+
 struct Search {
     /// No point that has been looked at is farther.
     bound: f64,

@@ -5,7 +5,7 @@
 
 use crate::{
     convex::is_closed_convex,
-    distance::{Corners, hausdorff},
+    distance::{Corners, farthest, hausdorff},
     mesh::{Mesh, Rgb},
     number::above,
     paint::distance,
@@ -117,12 +117,17 @@ fn fewest(part: &Part, most: usize, error: GeometricError, options: SimplifyOpti
 pub struct Simplified {
     /// Triangles before.
     pub before: usize,
-    /// No point of either surface lies farther from the other.
+    /// No measured point of either surface lies farther from the other.
     pub error: f64,
+    /// Whether only some triangles were measured, so that the error may be larger.
+    pub is_estimate: bool,
 }
 
 /// Smaller distances do not count: a tenth of a step of positions.
 const NEAREST: f64 = 0.1 / 16384.0;
+
+/// Triangles that an estimate measures at most. More of them would take longer than the rest of a conversion.
+const MEASURED: usize = 1 << 16;
 
 /// Reduces the parts of a mesh to at most `most` triangles together, as [`reduced`] does, and measures the [`difference`]. `None` if they have no more
 /// triangles. `tick` is called after each part.
@@ -142,13 +147,35 @@ pub fn simplify(mesh: &Mesh, parts: &mut Vec<Part>, most: usize, tick: &dyn Fn()
 /// The difference between the parts of a mesh and the [`reduced`] ones. `tick` is called after each part.
 #[must_use]
 pub fn difference(parts: &[Part], reduced: &[Part], tick: &dyn Fn()) -> Simplified {
-    let apart = |(part, reduced): (&Part, &Part)| {
-        let surface = |part: &Part| corners(&part.vertices, &part.triangles);
-        let apart = hausdorff(&surface(part), &surface(reduced), [NEAREST, f64::INFINITY]);
-        tick();
-        apart.unwrap_or(f64::INFINITY)
+    let apart = |part: &[Corners], reduced: &[Corners]| hausdorff(part, reduced, [NEAREST, f64::INFINITY]).unwrap_or(f64::INFINITY);
+    Simplified { before: count(parts), error: largest(parts, reduced, apart, tick), is_estimate: false }
+}
+
+/// The [`difference`], or of a large mesh an estimate of it: the distance of some of its triangles from the reduced ones. `tick` is called after each
+/// part.
+#[must_use]
+pub fn estimate(parts: &[Part], reduced: &[Part], tick: &dyn Fn()) -> Simplified {
+    let before = count(parts);
+    let step = before.div_ceil(MEASURED);
+    if step <= 1 {
+        return difference(parts, reduced, tick);
+    }
+    let apart = |part: &[Corners], reduced: &[Corners]| {
+        let some: Vec<_> = part.iter().step_by(step).copied().collect();
+        farthest(&some, reduced, NEAREST)
     };
-    Simplified { before: count(parts), error: parts.iter().zip(reduced).map(apart).fold(0.0, f64::max) }
+    Simplified { before, error: largest(parts, reduced, apart, tick), is_estimate: true }
+}
+
+/// The largest distance between the surface of a part and that of the reduced part.
+fn largest(parts: &[Part], reduced: &[Part], apart: impl Fn(&[Corners], &[Corners]) -> f64, tick: &dyn Fn()) -> f64 {
+    let surface = |part: &Part| corners(&part.vertices, &part.triangles);
+    let of_part = |(part, reduced): (&Part, &Part)| {
+        let apart = apart(&surface(part), &surface(reduced));
+        tick();
+        apart
+    };
+    parts.iter().zip(reduced).map(of_part).fold(0.0, f64::max)
 }
 
 /// Triangles of all parts together.

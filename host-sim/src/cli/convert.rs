@@ -217,13 +217,14 @@ pub(crate) fn run(arguments: &Arguments) -> Result<Outcome> {
     converted.look.budget = arguments.budget.unwrap_or(ErrorBudget::ONE);
     converted.look.shader = shader;
     let bytes = converted.stream().and_then(|bytes| arguments.outlined(bytes)).with_context(|| source.display().to_string())?;
-    let stream = bytes.parse()?;
+    let stream = bytes.view()?;
     if let Some(board) = &board
         && let Err(refused) = board.check(&stream)
     {
-        let load = |stream: &Stream<'_>| Ok(board.load(stream));
+        let load = |bytes: StreamBytes| Ok(board.load(&arguments.outlined(bytes)?.parse()?));
         let is_too_large = refused.is::<TooLarge>();
-        let remedy = if is_too_large { Remedy::search((&converted, &options), board.name, &load, &bars)? } else { None };
+        let remedy =
+            if is_too_large { Remedy::search((&converted, &options), board.name, (board.load(&stream), &load), &bars)? } else { None };
         let refused = match remedy {
             Some(remedy) => anyhow!("{refused}; {}", remedy.text()),
             None => refused,
@@ -231,12 +232,16 @@ pub(crate) fn run(arguments: &Arguments) -> Result<Outcome> {
         return Err(refused.context(source.display().to_string()));
     }
     let layout = picture.layout(&stream)?;
-    let (chip, load) = picture.roomiest(&stream, &layout)?;
-    let fits = board.is_some() || load <= 1.0;
-    let load = |stream: &Stream<'_>| Ok(picture.roomiest(stream, &picture.layout(stream)?)?.1);
-    let remedy = if fits { None } else { Remedy::search((&converted, &options), chip.name, &load, &bars)? };
+    let (chip, whole) = picture.roomiest(&stream, &layout)?;
+    let fits = board.is_some() || whole <= 1.0;
+    let load = |bytes: StreamBytes| {
+        let bytes = arguments.outlined(bytes)?;
+        let stream = bytes.parse()?;
+        Ok(picture.roomiest(&stream, &picture.layout(&stream)?)?.1)
+    };
+    let remedy = if fits { None } else { Remedy::search((&converted, &options), chip.name, (whole, &load), &bars)? };
     drop(bars);
-    let Converted { mesh, report, materials, mut remarks, parts, lost, look, simplified, painted, backs, .. } = converted;
+    let Converted { mesh, report, materials, mut remarks, whole, parts, lost, look, simplified, painted, backs, .. } = converted;
     if let (Some(most), None) = (options.simplify, &simplified) {
         remarks.push(format!("not simplified: the mesh has no more than {} triangles", report::grouped(most as u64)));
     }
@@ -249,7 +254,7 @@ pub(crate) fn run(arguments: &Arguments) -> Result<Outcome> {
         output: &target.to_string_lossy(),
         meshes: parts.len(),
         list: meshes::rows(&stream)?,
-        by_object: by_object(mesh, stream.names.len()),
+        by_object: by_object(mesh, &whole, stream.names.len()),
         materials: materials.iter().flatten().count() - painted.materials,
         colours: Some(painted).filter(|painted| painted.triangles > 0),
         backs,
@@ -295,9 +300,14 @@ fn records(parts: &[Part]) -> [usize; 2] {
     [parts.len(), parts.len() * size_of::<record::Mesh>() + vertices * size_of::<record::Vertex>()]
 }
 
-/// What --merge would spare of a mesh, before it is simplified.
-fn by_object(mut mesh: Mesh, names: usize) -> Option<ByObject> {
-    let [meshes, bytes] = records(&quantise(&mesh).0);
+/// What --merge would spare of a mesh that has these parts before it is simplified.
+fn by_object(mut mesh: Mesh, whole: &[Part], names: usize) -> Option<ByObject> {
+    // Most large models have one object, and need not be rounded a second time.
+    let first = mesh.submesh(0).object;
+    if mesh.submeshes.iter().all(|submesh| submesh.object == first) {
+        return None;
+    }
+    let [meshes, bytes] = records(whole);
     mesh.merge_objects();
     let [merged, fewer] = records(&quantise(&mesh).0);
     (meshes > merged).then(|| ByObject { meshes: meshes - merged, bytes: bytes - fewer + names })

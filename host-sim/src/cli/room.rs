@@ -60,12 +60,14 @@ pub(super) struct Simplified {
     /// The error in pixels, at most, in a picture of this size.
     pixels: f64,
     size: (u32, u32),
+    /// Whether only some triangles were measured, so that the error may be larger.
+    is_estimate: bool,
 }
 
 impl Simplified {
     /// The error of a simplified mesh in the largest picture that `--lod` names.
     pub(super) fn new(
-        levels::Simplified { before, error }: levels::Simplified,
+        levels::Simplified { before, error, is_estimate }: levels::Simplified,
         look: &Look,
         parts: &[Part],
         pictures: &[(u32, u32)],
@@ -73,13 +75,14 @@ impl Simplified {
         let size = pictures.iter().copied().max_by_key(|&(width, height)| u64::from(width) * u64::from(height)).unwrap_or(USUAL);
         // That which half a pixel is at the nearest point of the mesh. It is never more than that, so that these pixels are never too few.
         let half: f64 = look.tolerance(parts, size).max(GeometricError::DELTA).into();
-        Self { before, error, pixels: 0.5 * error / half, size }
+        Self { before, error, pixels: 0.5 * error / half, size, is_estimate }
     }
 
     /// The error in words.
     pub(super) fn text(&self) -> String {
-        let Self { error, pixels, size: (width, height), .. } = self;
-        format!("at most {error:.4} units from the mesh, {pixels:.1} pixels in a picture of {width}x{height}")
+        let Self { error, pixels, size: (width, height), is_estimate, .. } = self;
+        let about = if *is_estimate { "about" } else { "at most" };
+        format!("{about} {error:.4} units from the mesh, {pixels:.1} pixels in a picture of {width}x{height}")
     }
 }
 
@@ -95,14 +98,15 @@ pub(super) struct Remedy {
 }
 
 impl Remedy {
-    /// Searches it for the board or chip of this name, of which a stream takes a share; `None` if there is room for no simplified mesh.
+    /// Searches it for the board or chip of this name; `None` if there is room for no simplified mesh. The loads are the shares of it that the stream
+    /// takes without simplification, and that another stream takes.
     pub(super) fn search(
         (converted, options): (&Converted, &Options),
         name: &'static str,
-        load: &dyn Fn(&Stream<'_>) -> Result<f64>,
+        loads: (f64, &dyn Fn(StreamBytes) -> Result<f64>),
         steps: &dyn Steps,
     ) -> Result<Option<Self>> {
-        let largest = converted.largest(options, &|bytes: &StreamBytes| load(&bytes.parse()?), steps)?;
+        let largest = converted.largest(options, loads, steps)?;
         Ok(largest.map(|Largest { most, parts, simplified }| Self {
             fits: name,
             triangles: most,
