@@ -1,6 +1,6 @@
 //! Streams that are part of a program: the compiler checks them, so that the program need not.
 
-use super::{CRC_AT, Header, Stream, StreamError, record::MAGIC, record::VERSION};
+use super::{Header, Stream, StreamError, checksum_by_table, record::MAGIC, record::VERSION};
 
 /// Embeds a stream file (a mesh file written by `microphong convert`) in the program, like `include_bytes!`. The result is a
 /// `&'static [u8]` that is aligned for [`Stream::parse`](crate::Stream::parse), so the file can be read in place from flash:
@@ -33,16 +33,6 @@ pub const fn check_included(bytes: &[u8]) {
     assert!(length <= bytes.len(), "the stream is truncated; copy or convert it again");
     let computed = checksum_by_table(bytes.split_at(length).0);
     assert!(computed == u32::from_le_bytes([*c0, *c1, *c2, *c3]), "the stream is damaged; copy or convert it again");
-}
-
-/// Checksum of a stream, by a large table: it needs fewer steps for each byte, and each step takes the compiler long. Whoever writes streams has the
-/// memory.
-pub(super) const fn checksum_by_table(bytes: &[u8]) -> u32 {
-    static ALGORITHM: crc::Crc<u32, crc::Table<16>> = crc::Crc::<u32, crc::Table<16>>::new(&crc::CRC_32_ISO_HDLC);
-    let mut digest = ALGORITHM.digest();
-    digest.update(bytes.split_at(CRC_AT.start).0);
-    digest.update(bytes.split_at(CRC_AT.end).1);
-    digest.finalize()
 }
 
 impl<'a> Stream<'a> {
