@@ -443,7 +443,7 @@ fn faces_have_textures_where_colours_at_corners_do_not_suffice() {
     let with_texture = ["a.obj", "--colours", "texture"];
     let said = place.converts(&with_texture);
     for words in [
-        "12 triangles have 1 texture of 8x8 texels, 80 bytes: 0 % of the area is farther than 24 of 255 from the file, the root of the mean square is 0.0",
+        "12 triangles have 1 texture of 8x8 texels, 76 bytes: 0 % of the area is farther than 24 of 255 from the file, the root of the mean square is 0.0",
         "mesh 0: material 0 \"paint\", 12 triangles with a texture of 8x8",
         "features = [\"textures\"]",
     ] {

@@ -26,7 +26,7 @@ pub enum Program {
 impl Program {
     /// The program that draws colours at corners.
     pub const VERTEX_COLOURS: Self = Self::Styles("rgb565,vertex-colours");
-    /// That of textures.
+    /// The program that draws textures.
     pub const TEXTURES: Self = Self::Styles("rgb565,textures");
 
     /// Builds it for `board`, and returns the ELF's path. A program of other features takes the place of `styles`.

@@ -19,11 +19,11 @@ impl Random {
         Self(random)
     }
 
-    /// Another source, whose numbers do not depend on this one's. This one goes on as if the other had never been made.
+    /// Another source, one for each `number`, whose numbers do not depend on this one's. This one goes on as if the other had never been made.
     #[must_use]
-    pub fn aside(&self) -> Self {
+    pub fn aside(&self, number: u64) -> Self {
         let mut other = self.0.clone();
-        other.set_stream(!other.get_stream());
+        other.set_stream(!other.get_stream() ^ number);
         Self(other)
     }
 

@@ -87,7 +87,7 @@ pub fn drawn(random: &mut Random, mesh: &Mesh, size: [u32; 2], look: &Look) -> O
     let parts = parts(random, mesh, look)?;
     let stream = look.stream(&parts).ok()?;
     // All else of a scene is the same with a texture and without it.
-    let mut aside = random.aside();
+    let mut aside = random.aside(1 << 32);
     let textured = if aside.once_in(8) { textures::paint(&mut aside, &stream) } else { None };
     Some(styled(random, textured.unwrap_or(stream), size))
 }
@@ -101,7 +101,7 @@ pub fn parts(random: &mut Random, mesh: &Mesh, look: &Look) -> Option<Vec<Part>>
         levels::add(mesh, &mut parts, &errors, &|| ()).ok()?;
     }
     // All else of a scene is the same with colours and without them.
-    let mut aside = random.aside();
+    let mut aside = random.aside(0);
     if aside.once_in(4) {
         colours::paint(&mut aside, &mut parts);
     }

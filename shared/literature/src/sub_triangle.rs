@@ -8,8 +8,8 @@ use microphong::{
     format::{FINE, SPLITS},
     math::vector::zip,
     method::{
-        Area, Canvas, Field, Gradients, IntensityShader, NEAR, OnTexture, Patch, PlacePatch, Plane, Sampler, ScreenTriangle, Shaded,
-        SpanShader, TriangleSetup,
+        Area, Canvas, Field, Gradients, IfTextured, IntensityShader, NEAR, OnTexture, Patch, PlacePatch, Plane, Sampler, ScreenTriangle,
+        Shaded, SpanShader, TriangleSetup,
     },
 };
 
@@ -68,7 +68,7 @@ pub struct Parts<'f> {
     screen: &'f ScreenTriangle,
     gradients: Gradients,
     depth: Plane<1>,
-    texture: Option<(&'f Sampler<'f>, PlacePatch)>,
+    texture: IfTextured<Option<(&'f Sampler<'f>, PlacePatch)>>,
 }
 
 impl<'f> Parts<'f> {
@@ -109,7 +109,7 @@ impl Area for Part<'_> {
             return 0;
         }
         let (first, gradients) = (gradients.row(), place.gradients(gradients));
-        if let Some((sampler, mut patch)) = *texture {
+        if let Some(&Some((sampler, mut patch))) = texture.first() {
             patch.jump(gradients.row().wrapping_sub(first));
             let patch = (field.fit(&gradients), patch);
             return place.draw(gradients.row(), *depth, &mut Shaded::new(patch, OnTexture { sampler, shader }), canvas);

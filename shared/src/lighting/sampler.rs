@@ -11,7 +11,7 @@ use crate::{
 };
 
 /// A value for a mesh with a texture: there is room for none in a program without the feature.
-pub(crate) type IfTextured<T> = [T; TEXTURED];
+pub type IfTextured<T> = [T; TEXTURED];
 
 /// A place in a texture: columns to the right and rows downwards, in widths and heights of it, Q4.12.
 pub(crate) type Place = [i32; 2];

@@ -149,7 +149,7 @@ impl<C: Pixel> Drawing<'_, C> {
             corners,
             albedos: paint.lent(),
             nodes_of_colours: [Middles::IN_SPACE; COLOURED],
-            texture: self.pass.painting.texture(&paint, self.pass.stage.view.is_perspective()),
+            texture: self.pass.painting.texture(&paint),
             triangle,
             vertices: self.pass.vertices,
             turned: by,

@@ -22,7 +22,8 @@ use core::array::from_fn;
 #[derive(Clone, Copy)]
 pub(crate) struct Painting<'f> {
     colours: IfColoured<Option<(MeshColours<'f>, bool)>>,
-    texture: IfTextured<Option<(Sampler<'f>, &'f [TextureCorners])>>,
+    /// The texture, where the triangles lie in it, and whether the camera is a perspective one.
+    texture: IfTextured<Option<(Sampler<'f>, &'f [TextureCorners], bool)>>,
 }
 
 /// The colours of a triangle, if it has any. Corners run clockwise on the screen, which is against the order of the stream.
@@ -34,10 +35,13 @@ pub(crate) struct Paint {
 
 impl<'f> Painting<'f> {
     /// The colours of `mesh`. Pixel formats of greys take their luma.
-    pub(crate) fn of(stream: &Stream<'f>, mesh: &Mesh, is_gray: bool) -> Self {
+    pub(crate) fn of(stream: &Stream<'f>, mesh: &Mesh, is_gray: bool, in_perspective: impl Fn() -> bool) -> Self {
         Self {
             colours: [(); COLOURED].map(|()| stream.colours_of(mesh).map(|colours| (colours, is_gray))),
-            texture: [(); TEXTURED].map(|()| stream.texture_of(mesh).map(|texture| Sampler::new(texture, is_gray))),
+            texture: [(); TEXTURED].map(|()| {
+                let (sampler, corners) = Sampler::new(stream.texture_of(mesh)?, is_gray);
+                Some((sampler, corners, in_perspective()))
+            }),
         }
     }
 
@@ -54,7 +58,7 @@ impl<'f> Painting<'f> {
         if let (Some(albedos), Some(Some((colours, is_gray)))) = (paint.albedos.first_mut(), self.colours.first()) {
             *albedos = triangle().and_then(|triangle| corner_albedos(colours, *is_gray, triangle, by));
         }
-        if let (Some(albedos), Some(places), Some(Some((_, corners)))) =
+        if let (Some(albedos), Some(places), Some(Some((_, corners, _)))) =
             (paint.albedos.first_mut(), paint.places.first_mut(), self.texture.first())
         {
             *albedos = Some([Albedo::WHITE; 3]);
@@ -63,11 +67,12 @@ impl<'f> Painting<'f> {
         paint
     }
 
-    /// The texture of a triangle with these colours, if it has one. Whether the camera is a perspective one decides how it is interpolated.
-    pub(super) fn texture<'s>(&'s self, paint: &Paint, in_perspective: bool) -> IfTextured<Option<Textured<'s>>> {
+    /// The texture of a triangle with these colours, if it has one.
+    #[inline(always)]
+    pub(super) fn texture<'s>(&'s self, paint: &Paint) -> IfTextured<Option<Textured<'s>>> {
         from_fn(|k| {
-            let (Some((sampler, _)), Some(places)) = (&self.texture[k], paint.places[k]) else { return None };
-            Some(Textured { sampler, places, in_perspective })
+            let (Some((sampler, _, in_perspective)), Some(places)) = (&self.texture[k], paint.places[k]) else { return None };
+            Some(Textured { sampler, places, in_perspective: *in_perspective })
         })
     }
 }

@@ -167,7 +167,7 @@ impl MeshPass<'_> {
             corners: turn(placed.corners, screen.turned),
             albedos: paint.lent(),
             nodes_of_colours: [Middles::IN_SPACE; COLOURED],
-            texture: self.painting.texture(&paint, self.stage.view.is_perspective()),
+            texture: self.painting.texture(&paint),
             turned: screen.turned,
             triangle: placed.triangle,
             vertices: placed.vertices,

@@ -414,7 +414,7 @@ impl Shading<'_> {
         let dark = zip(ambient, pure, i32::wrapping_sub);
         let mut rooms = room.iter_mut();
         let colour = setup.albedos.map(|albedos| {
-            let painter = match setup.texture_patch() {
+            let painter = match setup.texture_patch().first().copied().flatten() {
                 Some((sampler, place)) => Painter::Texture(sampler, place),
                 None => Painter::Corners(ways(&setup.colours_at_nodes(albedos?)).map(&walked)),
             };

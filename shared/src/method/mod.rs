@@ -33,7 +33,7 @@ use crate::{
     lighting::{
         albedo::{Albedo, IfColoured},
         material_tables::MaterialTables,
-        sampler::{IfTextured, Textured},
+        sampler::Textured,
     },
     pixel::{Pixel, half_step, ramps::Ramps},
     raster::{
@@ -68,7 +68,7 @@ pub use {
         lighting::{
             lights::{Lighting, Source, Viewer, cosine, point},
             reflectance::{Highlight, LitMaterial, Reflectance, Reflection},
-            sampler::Sampler,
+            sampler::{IfTextured, Sampler},
         },
         math::highlight_lut::CosineLookup,
         raster::{

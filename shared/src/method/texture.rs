@@ -21,7 +21,7 @@ use crate::{
     lighting::{
         albedo::{Albedo, Parts, SHARE},
         constant_lights::COLOUR,
-        sampler::{FINER, Sampler, Textured},
+        sampler::{FINER, IfTextured, Sampler, Textured},
     },
     math::vector::{map, zip},
     method::{
@@ -73,13 +73,15 @@ impl TriangleSetup<'_> {
         TEXTURES && self.texture.first().is_some_and(Option::is_some)
     }
 
-    /// The texture of the triangle and the place in it, if it has one.
+    /// The texture of the triangle and the place in it, if it has one. There is no room for them in a program without the feature.
     #[doc(hidden)]
     #[inline]
     #[must_use]
-    pub fn texture_patch(&self) -> Option<(&Sampler<'_>, PlacePatch)> {
-        let texture = self.texture.first()?.as_ref()?;
-        Some((texture.sampler, self.place_patch(texture)))
+    pub fn texture_patch(&self) -> IfTextured<Option<(&Sampler<'_>, PlacePatch)>> {
+        self.texture.each_ref().map(|texture| {
+            let texture = texture.as_ref()?;
+            Some((texture.sampler, self.place_patch(texture)))
+        })
     }
 
     /// The place in a texture over the triangle.
@@ -122,7 +124,7 @@ impl TriangleSetup<'_> {
     where
         for<'s> OnTexture<'s, S>: IntensityShader<(F::Value, [u32; 2])>,
     {
-        let (sampler, place) = self.texture_patch()?;
+        let (sampler, place) = self.texture_patch().first().copied()??;
         let shader = OnTexture { sampler, shader };
         if PERSPECTIVE && let Some(inv_depth) = self.inv_depth() {
             let patch = PerspectivePatch::new(self.gradients, inv_depth, field.surface());

@@ -356,7 +356,7 @@ impl<'a> Stream<'a> {
         let has_outlines = header.outlines != NO_OUTLINES;
         field(has_outlines || header.outline_colour == [0; 3], "outline colour", 0)?;
         field(header.corner_colours <= header.triangles, "corner colours", 0)?;
-        field(header.texels.is_multiple_of(4), "texels", 0)?;
+        field(!TEXTURES || header.texels.is_multiple_of(4), "texels", 0)?;
         field(!has_outlines || header.triangles == 0 || !self.neighbours.is_empty(), "neighbours for outlines", 0)?;
         let fault = |fault: Option<&'static str>, i: usize| fault.map_or(Ok(()), |name| field(false, name, i));
         fault(header.camera.fault(), 0)?;
