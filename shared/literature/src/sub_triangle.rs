@@ -108,13 +108,30 @@ impl Area for Part<'_> {
         if !place.meets(canvas) {
             return 0;
         }
-        let (first, gradients) = (gradients.row(), place.gradients(gradients));
-        if let Some(&Some((sampler, mut patch))) = texture.first() {
-            patch.jump(gradients.row().wrapping_sub(first));
-            let patch = (field.fit(&gradients), patch);
-            return place.draw(gradients.row(), *depth, &mut Shaded::new(patch, OnTexture { sampler, shader }), canvas);
+        if let Some(Some(texture)) = texture.first() {
+            return self.draw_textured(&place, *texture, field, shader, canvas);
         }
+        let gradients = place.gradients(gradients);
         place.draw(gradients.row(), *depth, &mut Shaded::new(field.fit(&gradients), shader), canvas)
+    }
+}
+
+impl Part<'_> {
+    /// [`Area::draw`] on a texture, whose place stands on the first row of the whole triangle.
+    #[inline(never)]
+    fn draw_textured<F: Field, S: IntensityShader<F::Value>>(
+        &self,
+        place: &ScreenSubTriangle,
+        (sampler, mut patch): (&Sampler<'_>, PlacePatch),
+        field: &F,
+        shader: S,
+        canvas: &mut dyn Canvas,
+    ) -> u32 {
+        let Parts { gradients: whole, depth, .. } = self.whole;
+        let gradients = place.gradients(whole);
+        patch.jump(gradients.row().wrapping_sub(whole.row()));
+        let patch = (field.fit(&gradients), patch);
+        place.draw(gradients.row(), *depth, &mut Shaded::new(patch, OnTexture { sampler, shader }), canvas)
     }
 }
 
