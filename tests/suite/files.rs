@@ -460,7 +460,7 @@ fn faces_have_textures_where_colours_at_corners_do_not_suffice() {
     assert_eq!((&counts["colours"]["triangles"], &counts["list"][0]["texture"]), (&0.into(), &serde_json::json!([8, 8])));
     let inspected = String::from_utf8(place.run(&["inspect", "out.tri"]).stdout).expect("text");
     for words in
-        ["1 textures          8 bytes", "64 texels           64 bytes", "12 places          144 bytes", "2 colours           8 bytes"]
+        ["1 textures          4 bytes", "64 texels           64 bytes", "12 places          144 bytes", "2 colours           8 bytes"]
     {
         assert!(inspected.contains(words), "{words}: {inspected}");
     }
