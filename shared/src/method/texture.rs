@@ -87,13 +87,8 @@ impl TriangleSetup<'_> {
     /// The place in a texture over the triangle.
     #[inline(never)]
     fn place_patch(&self, texture: &Textured<'_>) -> PlacePatch {
-        let shares = match self.way_of_places(texture) {
-            LinearWay::Plane => Some(Middles::IN_SPACE.shares()),
-            LinearWay::Quadratic(shares) => Some(shares),
-            LinearWay::InSpace => None,
-        };
-        if let Some(shares) = shares {
-            return PlacePatch::OnScreen(fitted(&place_nodes(texture, shares), self.gradients));
+        if let Some(quadric) = self.place_on_screen(texture) {
+            return PlacePatch::OnScreen(quadric);
         }
         let surface = linear(corner_nodes(texture)).surface();
         PlacePatch::InSpace(PerspectivePatch::new(self.gradients, self.corners.map(|corner| corner.depth), surface))
@@ -111,12 +106,17 @@ impl TriangleSetup<'_> {
     #[inline(never)]
     pub(crate) fn sampled(&self) -> Option<Sampled<'_, ByColumn<Quadric<2>>>> {
         let texture = self.texture.first()?.as_ref()?;
+        Some(Sampled { place: ByColumn(self.place_on_screen(texture)?), sampler: texture.sampler })
+    }
+
+    /// The place in a texture as a quadratic on the screen; `None` if it would be too far off.
+    fn place_on_screen(&self, texture: &Textured<'_>) -> Option<Quadric<2>> {
         let shares = match self.way_of_places(texture) {
             LinearWay::Plane => Middles::IN_SPACE.shares(),
             LinearWay::Quadratic(shares) => shares,
             LinearWay::InSpace => return None,
         };
-        Some(Sampled { place: ByColumn(fitted(&place_nodes(texture, shares), self.gradients)), sampler: texture.sampler })
+        Some(fitted(&place_nodes(texture, shares), self.gradients))
     }
 
     /// Draws the triangle, whose light is `field`, by `shader` with the texture. Returns the number of pixels drawn; `None` if it has no texture.
