@@ -18,9 +18,14 @@ use core::num::NonZeroU32;
 /// A value for a mesh with colours at its corners: there is room for none in a program without the feature.
 pub(crate) type IfColoured<T> = [T; COLOURED];
 
-/// The colour of a surface at a point: shares of red, green and blue light, unsigned Q0.16 with 65,535 for all of it.
+/// The colour of a surface at a point: shares of red, green and blue light, unsigned Q0.16 with 65,535 for all of it. Whole words are copied without a
+/// call.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub struct Albedo([u16; 3]);
+pub struct Albedo {
+    /// Red in the lower half, green in the upper one.
+    red_green: u32,
+    blue: u32,
+}
 
 /// The levels of ambient and diffuse light, Q9.7 or more bits, and those of highlights, which no colour changes.
 #[derive(Clone, Copy, Debug)]
@@ -38,15 +43,30 @@ const MOST: i32 = (1 << (LEVEL + 9)) - 1;
 
 impl Albedo {
     /// All light is reflected.
-    pub(crate) const WHITE: Self = Self([u16::MAX; 3]);
+    pub(crate) const WHITE: Self = Self { red_green: u32::MAX, blue: 0xFFFF };
 
     /// A colour of a palette. In greys all shares are that of its luma, by the weights of Rec. 601.
     #[inline(always)]
     pub(crate) fn new(Colour { channels: [r, g, b], .. }: Colour, is_gray: bool) -> Self {
-        let [r, g, b] = [r, g, b].map(u32::from);
-        // From 255 to 65,535.
-        let share = |c: u32| (c * 257) as u16;
-        Self(if is_gray { [(((r * 77 + g * 150 + b * 29) * 257) >> 8) as u16; 3] } else { [share(r), share(g), share(b)] })
+        let (r, g, b) = (u32::from(r), u32::from(g), u32::from(b));
+        if is_gray {
+            let luma = ((r * 77 + g * 150 + b * 29) * 257) >> 8;
+            return Self { red_green: luma | luma << 16, blue: luma };
+        }
+        // From 255 to 65,535, two at once.
+        Self { red_green: (r | g << 16) * 257, blue: b * 257 }
+    }
+
+    /// The colour of three shares.
+    #[inline(always)]
+    fn of([r, g, b]: [u16; 3]) -> Self {
+        Self { red_green: u32::from(r) | u32::from(g) << 16, blue: b.into() }
+    }
+
+    /// The three shares.
+    #[inline(always)]
+    fn channels(self) -> [u16; 3] {
+        [self.red_green as u16, (self.red_green >> 16) as u16, self.blue as u16]
     }
 
     /// Three colours of a palette, see [`Self::new`].
@@ -58,33 +78,35 @@ impl Albedo {
     /// The colour of these shares, which lie in [0, 65,535].
     #[inline]
     pub(crate) fn of_shares(shares: [i32; 3]) -> Self {
-        Self(map(shares, |share| share as u16))
+        Self::of(map(shares, |share| share as u16))
     }
 
     /// The shares of the three channels.
     #[inline]
     pub(crate) fn shares(self) -> [i32; 3] {
-        map(self.0, i32::from)
+        map(self.channels(), i32::from)
     }
 
     /// The colour on the way from `self` to `other`, at a share of it in Q0.16.
     #[inline]
     pub(crate) fn towards(self, other: Self, share: u16) -> Self {
         let (from, to) = (65_536 - u32::from(share), u32::from(share));
-        Self(zip(self.0, other.0, |a, b| ((u32::from(a) * from + u32::from(b) * to) >> 16) as u16))
+        Self::of(zip(self.channels(), other.channels(), |a, b| ((u32::from(a) * from + u32::from(b) * to) >> 16) as u16))
     }
 
     /// The mean of three colours with these weights, whose sum is at most 65,536.
     #[inline]
-    pub(crate) fn mean(&[Self(a), Self(b), Self(c)]: &[Self; 3], [u, v, w]: [u32; 3]) -> Self {
+    pub(crate) fn mean(corners: &[Self; 3], [u, v, w]: [u32; 3]) -> Self {
+        let [a, b, c] = map(*corners, Self::channels);
         let sum = NonZeroU32::new(u + v + w).unwrap_or(NonZeroU32::MIN);
         let (weighted, pair) = (|share: u16, weight: u32| u32::from(share) * weight, |a: u16, b: u16| (a, b));
-        Self(zip(zip(a, b, pair), c, |(a, b), c| ((weighted(a, u) + weighted(b, v) + weighted(c, w)) / sum) as u16))
+        Self::of(zip(zip(a, b, pair), c, |(a, b), c| ((weighted(a, u) + weighted(b, v) + weighted(c, w)) / sum) as u16))
     }
 
     /// The least and the largest share of a channel at three corners.
     #[inline]
-    fn extremes(&[Self(a), Self(b), Self(c)]: &[Self; 3]) -> [(u16, u16); 3] {
+    fn extremes(corners: &[Self; 3]) -> [(u16, u16); 3] {
+        let [a, b, c] = map(*corners, Self::channels);
         zip(zip(a, b, |a, b| (a.min(b), a.max(b))), c, |(least, most), c| (least.min(c), most.max(c)))
     }
 
@@ -98,7 +120,7 @@ impl Albedo {
     /// The colour whose channels lie half-way between the extremes at three corners.
     #[inline]
     pub(crate) fn half_way(corners: &[Self; 3]) -> Self {
-        Self(map(Self::extremes(corners), |(least, most)| least + ((most - least) >> 1)))
+        Self::of(map(Self::extremes(corners), |(least, most)| least + ((most - least) >> 1)))
     }
 
     /// The levels of a vertex that holds [`Parts`], at a corner of this colour.
@@ -110,14 +132,15 @@ impl Albedo {
             let bits = (SHARE - spare as u32) & 31;
             (((diffuse * u32::from(share) + (1 << (SHARE - 1))) >> bits) + specular).min(FULL as u32) as i32
         };
-        let [red, green, blue] = self.0;
+        let [red, green, blue] = self.channels();
         [lit(r, red), lit(g, green), lit(b, blue)]
     }
 
     /// The levels of a surface of this colour, Q9.7 in [0, 255].
     #[inline]
     pub(crate) fn lit(self, Parts { diffuse, specular }: Parts) -> [i32; 3] {
-        let reflected = zip(diffuse, self.0, |level, share| (unsigned_product(level as u32, share.into()) + (1 << (SHARE - 1))) >> SHARE);
+        let reflected =
+            zip(diffuse, self.channels(), |level, share| (unsigned_product(level as u32, share.into()) + (1 << (SHARE - 1))) >> SHARE);
         zip(reflected, specular, |reflected, specular| (reflected as i32 + specular).min(FULL))
     }
 }

@@ -8,7 +8,9 @@ use crate::{
     pixel::{
         Pixel,
         by_rows::{ByRows, ByTurns},
+        half_step,
         ramps::Ramps,
+        steps,
     },
 };
 use zerocopy::{FromBytes, Immutable, IntoBytes, KnownLayout};
@@ -150,7 +152,7 @@ pub struct Sum {
 }
 
 /// Fraction bits of a cosine that is multiplied by a diffuse level.
-pub(super) const FACTOR: u32 = CHANNEL - LEVEL;
+pub(crate) const FACTOR: u32 = CHANNEL - LEVEL;
 /// The diffuse level of [`OneLightRgb`] at cosine 1 is 2 to this power: half of the walked range, so that cosines and their overshoots fit.
 const FULL_BITS: u32 = 7;
 
@@ -175,6 +177,7 @@ impl Sum {
     }
 
     /// The sum on a surface that reflects a `share` of ambient and diffuse light, Q0.16. `ambient` is the level of ambient light alone.
+    #[inline(always)]
     pub(super) fn painted(self, ambient: i32, share: i32) -> Self {
         let reflected = |level: i32| (unsigned_product(level as u32, share as u32) >> SHARE) as i32;
         let lit = reflected(ambient);
@@ -225,6 +228,22 @@ impl<C> OneLightRgb<'_, C> {
 }
 
 impl<C: Pixel> OneLightRgb<'_, C> {
+    /// Whether no level exceeds 255 up to a cosine, Q1.15, without a highlight. Levels that are close to 255 count as larger.
+    #[inline(always)]
+    pub(crate) fn stays_within(&self, cosine: i32) -> bool {
+        let [r, g, b] = self.0.now();
+        let level = |sum: &Sum| sum.ambient.wrapping_add(sum.diffuse.wrapping_mul(cosine));
+        level(r).max(level(g)).max(level(b)) <= 255 << CHANNEL
+    }
+
+    /// The colour at a cosine, Q1.15, without a highlight.
+    #[inline(always)]
+    pub(crate) fn diffuse_at(&self, cosine: i32) -> C {
+        let [r, g, b] = self.0.now();
+        let level = |sum: &Sum| sum.ambient.wrapping_add(sum.diffuse.wrapping_mul(cosine));
+        C::mixed([level(r), level(g), level(b)])
+    }
+
     /// The colour of one cosine, Q1.15, and a highlight, unsigned Q0.16, on even rows and on odd ones.
     #[inline(always)]
     pub fn by_turns(&self, cosine: i32, highlight: u32) -> [C::Stored; 2] {
@@ -265,9 +284,7 @@ impl<C: Pixel> Shades<WithHighlight> for OneLightRgb<'_, C> {
 impl<C: Pixel> Shades<DiffuseOnly> for OneLightRgb<'_, C> {
     #[inline(always)]
     fn colour(&self, bits: u32, DiffuseOnly(diffuse): DiffuseOnly) -> C {
-        let ([r, g, b], cosine) = (self.0.now(), cosine(bits, diffuse));
-        let level = |sum: &Sum| sum.ambient.wrapping_add(sum.diffuse.wrapping_mul(cosine));
-        C::mixed([level(r), level(g), level(b)])
+        self.diffuse_at(cosine(bits, diffuse))
     }
 }
 
@@ -308,6 +325,66 @@ impl<C: Pixel, L: Into<WithHighlight>> Shades<Coloured<L>> for ColouredRgb<'_, C
         };
         let [sum_r, sum_g, sum_b] = sums;
         C::mixed([level(sum_r, r, red), level(sum_g, g, green), level(sum_b, b, blue)])
+    }
+}
+
+/// [`ColouredRgb`] where red and blue have the same levels, as they do where neither material nor light has a hue. A loop keeps nearly all of these
+/// numbers in registers.
+#[derive(Clone, Copy, Debug)]
+pub struct NeutralRgb<C> {
+    /// Levels of red and blue. Ambient light is without what rounding and dither add.
+    outer: Sum,
+    /// Levels of green, of which a display of 16 bits shows more steps.
+    middle: Sum,
+    /// What rounding and dither add to a channel of eight bits, Q10.22.
+    rounding: ByTurns<i32, C>,
+}
+
+impl<C: Pixel> NeutralRgb<C> {
+    /// The levels of these sums for even rows, which are dithered by `quarter`; `None` if red and blue differ.
+    #[inline(always)]
+    pub(super) fn new([r, g, b]: &Sums, quarter: i32) -> Option<Self> {
+        let [even, odd] = [half_step(8).wrapping_sub(quarter), half_step(8).wrapping_add(quarter)];
+        let [more_r, more_g, more_b] = steps(C::LEVELS, even);
+        let is_same = more_r == more_b && r.ambient == b.ambient && r.diffuse == b.diffuse && r.specular == b.specular;
+        let pure = |sum: &Sum, more: i32| sum.raised(more.wrapping_neg());
+        is_same.then_some(Self { outer: pure(r, more_r), middle: pure(g, more_g), rounding: ByTurns::new([even, odd]) })
+    }
+}
+
+impl<C: Pixel> ByRows for NeutralRgb<C> {
+    #[inline(always)]
+    fn step_row(&mut self) {
+        self.rounding.step_row();
+    }
+}
+
+impl<C: Pixel> LitColours for NeutralRgb<C> {
+    type Pixel = C;
+
+    const TABLED: bool = false;
+
+    fn diffuse(&self) -> u16 {
+        OneLightRgb::<C>::DIFFUSE
+    }
+}
+
+impl<C: Pixel, L: Into<WithHighlight>> Shades<Coloured<L>> for NeutralRgb<C> {
+    #[inline(always)]
+    fn colour(&self, bits: u32, Coloured(light, [red, green, blue]): Coloured<L>) -> C {
+        let WithHighlight(diffuse, highlight) = light.into();
+        let (Self { outer, middle, .. }, cosine, highlight) = (self, cosine(bits, diffuse), highlight as i32);
+        let [r, g, b] = steps(C::LEVELS, self.rounding.now());
+        // Added up channel by channel, without arrays: the compiler would keep these in memory.
+        let level = outer.ambient.wrapping_add(outer.diffuse.wrapping_mul(cosine));
+        let green_level = middle.ambient.wrapping_add(middle.diffuse.wrapping_mul(cosine));
+        let more = outer.specular.wrapping_mul(highlight);
+        let green_more = middle.specular.wrapping_mul(highlight);
+        C::mixed([
+            painted(level, red).wrapping_add(more).wrapping_add(r),
+            painted(green_level, green).wrapping_add(green_more).wrapping_add(g),
+            painted(level, blue).wrapping_add(more).wrapping_add(b),
+        ])
     }
 }
 

@@ -5,7 +5,7 @@ use crate::{
     format::{BIAS, CHANNEL, COSINE, FULL, INTENSITY, LEVEL, WALK},
     lighting::{
         albedo::Albedo,
-        constant_lights::{ColouredRgb, FACTOR, OneLightRamp, OneLightRgb, SummedRgb, Sums, TwoLightsRgb},
+        constant_lights::{ColouredRgb, FACTOR, NeutralRgb, OneLightRamp, OneLightRgb, SummedRgb, Sums, TwoLightsRgb},
         reflectance::{LitMaterial, Reflectance},
     },
     math::vector::zip,
@@ -94,13 +94,20 @@ impl<'a, C: Pixel> MaterialTables<'a, C> {
         ColouredRgb { sums: self.sums(), ambient: self.reflectance.pure_ambient() }
     }
 
-    /// The sums of [`Self::one_light_rgb`] on a surface of this colour, for even rows and for odd ones.
+    /// The colours of [`Self::coloured_rgb`] where red and blue have the same levels.
+    #[inline(always)]
+    pub(crate) fn neutral_rgb(&self) -> Option<NeutralRgb<C>> {
+        let [[even, ..], _] = &self.reflectance.reflectance().sums;
+        NeutralRgb::new(even, self.reflectance.quarter())
+    }
+
+    /// The sums of [`Self::one_light_rgb`] on a surface of this colour, `raise` (Q9.7) higher, for even rows and for odd ones.
     #[inline(never)]
-    pub(crate) fn painted_sums(&self, albedo: Albedo) -> [Sums; 2] {
+    pub(crate) fn painted_sums(&self, albedo: Albedo, raise: i32) -> [Sums; 2] {
         let ([[even, ..], [odd, ..]], ambient) = (&self.reflectance.reflectance().sums, self.reflectance.pure_ambient());
         [even, odd].map(|sums| {
             zip(*sums, zip(ambient, albedo.shares(), |ambient, share| (ambient, share)), |sum, (ambient, share)| {
-                sum.painted(ambient, share)
+                sum.painted(ambient, share).raised(raise << FACTOR)
             })
         })
     }

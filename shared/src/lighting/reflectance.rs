@@ -766,17 +766,17 @@ fn diffuse_level([ambient, diffuse]: [i32; 2], cosine: i32) -> i32 {
 }
 
 impl Parts {
-    /// Adds what a light with these gains adds, from N·L (Q2.30) and a highlight (unsigned Q0.16).
+    /// Adds what a light with these gains adds, from N·L (Q2.30) and a highlight (unsigned Q0.16). All lights together have 20 bits.
     #[inline(always)]
     fn add(&mut self, gains: &Gains, towards: i32, highlight: u32) {
         if towards > 0 {
             let cosine = towards as u32 >> (COSINE - 15);
-            let lit = |level: i32, gain: u16| level.saturating_add(((u32::from(gain) * cosine + (1 << 14)) >> 15) as i32);
+            let lit = |level: i32, gain: u16| level.wrapping_add(((u32::from(gain) * cosine + (1 << 14)) >> 15) as i32);
             let ([r, g, b], [red, green, blue]) = (self.diffuse, gains.diffuse);
             self.diffuse = [lit(r, red), lit(g, green), lit(b, blue)];
         }
         if highlight > 0 {
-            let lit = |level: i32, gain: u16| level.saturating_add(((u32::from(gain) * highlight + (1 << (ENTRY - 1))) >> ENTRY) as i32);
+            let lit = |level: i32, gain: u16| level.wrapping_add(((u32::from(gain) * highlight + (1 << (ENTRY - 1))) >> ENTRY) as i32);
             let ([r, g, b], [red, green, blue]) = (self.specular, gains.specular);
             self.specular = [lit(r, red), lit(g, green), lit(b, blue)];
         }

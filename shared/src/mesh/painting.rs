@@ -13,7 +13,7 @@ use crate::{
     raster::triangle::turn,
     stream::{
         MeshColours, Stream,
-        record::{Mesh, TextureCorners},
+        record::{Colour, Mesh, TextureCorners},
     },
 };
 use core::array::from_fn;
@@ -55,8 +55,11 @@ impl<'f> Painting<'f> {
     pub(super) fn corners(&self, triangle: impl Fn() -> Option<usize>, by: usize) -> Paint {
         // Not by `map`, which goes through memory at opt-level "s".
         let mut paint = Paint { albedos: [None; COLOURED], places: [None; TEXTURED] };
-        if let (Some(albedos), Some(Some((colours, is_gray)))) = (paint.albedos.first_mut(), self.colours.first()) {
-            *albedos = triangle().and_then(|triangle| corner_albedos(colours, *is_gray, triangle, by));
+        if let (Some(albedos), Some(Some((colours, is_gray)))) = (paint.albedos.first_mut(), self.colours.first())
+            && let Some(triangle) = triangle()
+            && let Some(corners) = corner_colours(colours, triangle, by)
+        {
+            *albedos = Some(Albedo::all(corners, *is_gray));
         }
         if let (Some(albedos), Some(places), Some(Some((_, corners, _)))) =
             (paint.albedos.first_mut(), paint.places.first_mut(), self.texture.first())
@@ -78,11 +81,11 @@ impl<'f> Painting<'f> {
 }
 
 #[inline(always)]
-fn corner_albedos(MeshColours { palette, corners }: &MeshColours<'_>, is_gray: bool, triangle: usize, by: usize) -> Option<[Albedo; 3]> {
+fn corner_colours(MeshColours { palette, corners }: &MeshColours<'_>, triangle: usize, by: usize) -> Option<[Colour; 3]> {
     let [a, c, b] = corners.get(triangle)?.colours;
     let [i, j, k] = turn([a, b, c], by);
     let colour = |index: u8| palette.get(usize::from(index)).copied();
-    Some(Albedo::all([colour(i)?, colour(j)?, colour(k)?], is_gray))
+    Some([colour(i)?, colour(j)?, colour(k)?])
 }
 
 fn places_at(&TextureCorners([a, c, b]): &TextureCorners, by: usize) -> Option<[Place; 3]> {

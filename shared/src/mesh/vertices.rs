@@ -47,10 +47,11 @@ impl VertexStage<'_> {
         self.has_colours.first().is_some_and(|&has_colours| has_colours)
     }
 
-    /// Whether vertices hold [`Parts`](crate::lighting::albedo::Parts) in place of levels, because the corners of triangles have colours.
+    /// Whether vertices hold [`Parts`](crate::lighting::albedo::Parts) in place of levels, because the corners of triangles have colours. A reflection
+    /// of one constant light says as much in fewer instructions.
     #[inline(always)]
     pub(crate) fn holds_parts(&self) -> bool {
-        self.is_coloured() && self.has_levels()
+        self.is_coloured() && self.has_levels() && (self.constant.is_none() || self.light != VertexLight::ReflectionOrLevels)
     }
 
     /// Whether vertices hold levels, or nothing, unless there is one constant light.

@@ -190,7 +190,7 @@ fn draw_coloured<C: Pixel>(
     }
     let [a, b, c] = *albedos;
     if a == b && b == c {
-        let sums = &tables.painted_sums(a);
+        let sums = &tables.painted_sums(a, 0);
         if setup.leaves_out_highlight(tables.reflectance, &cosines[1]) {
             setup.count(band.top, &mut band.counts.without_highlight, 1);
             let (colours, at) = (OneLightRgb::of(sums), Quotient(HalfRsqrt::get()));
@@ -212,7 +212,26 @@ fn draw_painted<C: Pixel, P: Patch<Walker: Walker<Value = [u32; 3]>>>(
     tables: MaterialTables<'_, C>,
     band: &mut Band<'_, C>,
 ) -> Option<u32> {
-    let colours = tables.coloured_rgb();
+    match tables.neutral_rgb() {
+        Some(colours) => draw_painted_in(setup, cosines, lengths, colour, colours, tables, band),
+        None => draw_painted_in(setup, cosines, lengths, colour, tables.coloured_rgb(), tables, band),
+    }
+}
+
+/// Draws as [`draw_painted`] does, in these `colours`.
+#[inline(always)]
+fn draw_painted_in<C: Pixel, P: Patch<Walker: Walker<Value = [u32; 3]>>, T>(
+    setup: &TriangleSetup<'_>,
+    cosines: &CornerCosines,
+    lengths: &Lengths,
+    colour: impl Fn() -> P,
+    colours: T,
+    tables: MaterialTables<'_, C>,
+    band: &mut Band<'_, C>,
+) -> Option<u32>
+where
+    T: Shades<Coloured<DiffuseOnly>> + Shades<Coloured<WithHighlight>> + LitColours<Pixel = C>,
+{
     let (lookup, full) = (QuotientLookup::new(tables.reflectance.table()?), colours.diffuse());
     if setup.leaves_out_highlight(tables.reflectance, &cosines[1]) {
         setup.count(band.top, &mut band.counts.without_highlight, 1);

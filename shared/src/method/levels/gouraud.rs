@@ -5,11 +5,17 @@
 //! for diffuse light, c the smallest cosine between two corners' normals.
 
 use crate::{
-    features::PERSPECTIVE,
+    features::{PERSPECTIVE, VERTEX_COLOURS},
+    format::COSINE,
     geometry::projection::ScreenVertex,
-    interpolate::{by_column::ByColumn, plane::Plane},
+    interpolate::{
+        by_column::ByColumn,
+        field::{Field, Nodes},
+        plane::Plane,
+    },
     lighting::{
         albedo::{Albedo, IfColoured, Parts},
+        constant_lights::{FACTOR, OneLightRgb},
         material_tables::MaterialTables,
         reflectance::Reflectance,
     },
@@ -18,8 +24,12 @@ use crate::{
         Facts, LinearWay, Loops, Method, RANGE, Shading, Style, TriangleSetup, VertexLight, channels, fit_levels, largest_range,
         node::mixed, texture,
     },
-    pixel::Pixel,
-    raster::{band::Band, canvas::Canvas, pixel_shader::Ramp},
+    pixel::{Pixel, by_rows::ByRows},
+    raster::{
+        band::Band,
+        canvas::Canvas,
+        pixel_shader::{PixelShader, Ramp},
+    },
     setup::gradients::Gradients,
 };
 
@@ -74,7 +84,7 @@ impl Loops for Gouraud {
         }
         // In colours, meshes with colours at their corners have three channels.
         if C::GRAY && setup.albedos().is_some() {
-            return Some(Shading::fill_one(setup, || setup.levels().map(|[level, ..]| level), tables, band));
+            return Some(Shading::fill_one(setup, || corner_levels(setup, shading).map(|[level, ..]| level), tables, band));
         }
         if !THREE {
             return Some(setup.fill(|| one::<C>(setup.gradients, [a.light[2], b.light[2], c.light[2]]), Ramp(tables.ramps), band));
@@ -122,11 +132,60 @@ pub(crate) fn draw_three<C: Pixel>(
         let levels = || [level(a.light), level(b.light), level(c.light)];
         return setup.fill(|| one::<C>(setup.gradients, levels()), Ramp(tables.ramps), band);
     }
+    if VERTEX_COLOURS
+        && let Some(&[albedo, second, third]) = setup.albedos()
+        && albedo == second
+        && albedo == third
+        && a.light[2] | b.light[2] | c.light[2] == 0
+    {
+        let sums = &tables.painted_sums(albedo, raise);
+        let colours = OneLightRgb::of(sums);
+        let most = a.light[0].max(b.light[0]).max(c.light[0]);
+        if colours.stays_within(cosine_of(most)) {
+            return draw_tinted(setup, colours, band);
+        }
+    }
     let channels = || {
         let [[r0, g0, b0], [r1, g1, b1], [r2, g2, b2]] = reflections([a, b, c], setup.albedos, reflectance);
         [[r0, r1, r2], [g0, g1, g2], [b0, b1, b2]]
     };
     shading.fill_three(setup, channels, raise, |plane| plane, band)
+}
+
+/// Draws a triangle of one colour under one constant light without a highlight: each channel is a product of one walked cosine. Returns the number of
+/// its pixels in `band`.
+#[inline(never)]
+fn draw_tinted<C: Pixel>(setup: &TriangleSetup<'_>, colours: OneLightRgb<'_, C>, band: &mut Band<'_, C>) -> u32 {
+    let cosines = || {
+        let nodes = setup.corners.map(|corner| cosine_of(corner.light[0]));
+        Nodes::<3, 1, { FACTOR + 1 }>::new([nodes], COSINE - FACTOR).fit(setup.gradients)
+    };
+    setup.fill(cosines, Tinted(colours), band)
+}
+
+/// A cosine, Q2.30, as sums take it: Q1.15 from 0 to 1.
+fn cosine_of(cosine: i32) -> i32 {
+    cosine.clamp(0, (1 << COSINE) - 1) >> (COSINE - FACTOR)
+}
+
+/// One walked cosine, Q2.30, on a surface of one colour.
+#[derive(Clone, Copy)]
+struct Tinted<'a, C>(OneLightRgb<'a, C>);
+
+impl<C: Pixel> ByRows for Tinted<'_, C> {
+    #[inline(always)]
+    fn step_row(&mut self) {
+        self.0.step_row();
+    }
+}
+
+impl<C: Pixel> PixelShader<[u32; 1]> for Tinted<'_, C> {
+    type Pixel = C;
+
+    #[inline(always)]
+    fn shade(&self, [cosine]: [u32; 1]) -> C {
+        self.0.diffuse_at((cosine >> (COSINE - FACTOR)) as i32)
+    }
 }
 
 /// Draws a triangle by the quadratic through the levels at the corners and at these shares of the edges. Returns the number of its pixels in `band`.
