@@ -7,8 +7,8 @@ pub use microphong_boards::{self as board, verify};
 pub use microphong_bounds as bounds;
 pub use microphong_compare::{self as compare, level};
 pub use microphong_models::{
-    backs, bytes, coat, convert, convex, distance, import, levels, look, mesh, number, obj, paint, polygon, quantise, records, scene,
-    script, shapes, vector, view,
+    backs, bytes, coat, convert, convex, distance, gallery, import, levels, look, mesh, number, obj, paint, polygon, quantise, records,
+    scene, script, shapes, vector, view,
 };
 pub use microphong_oracle::{self as oracle, papers};
 pub use microphong_render::{chip, choices, image, legend, output, program, render, shader};

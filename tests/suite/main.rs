@@ -21,6 +21,7 @@ mod faults;
 mod features;
 mod files;
 mod framing;
+mod gallery;
 mod gamma;
 mod golden;
 mod hostile;

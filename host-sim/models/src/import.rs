@@ -92,10 +92,16 @@ pub fn bytes_by(path: &Path, bytes: &[u8], beside: &[(&str, &[u8])], weld: Weld,
 }
 
 fn welded(path: &Path, bytes: &[u8], folder: &Folder, weld: Weld, rules: Rules) -> Result<Imported> {
-    let place = || path.display().to_string();
-    let Contents { soup, objects, mut materials, textures, mut ignored, mut faults, mut remarks } =
-        contents(path, bytes, folder, rules.colours)?;
-    let (mut mesh, sources, report) = mesh::weld_with_sources(&soup, weld).with_context(place)?;
+    made_of(contents(path, bytes, folder, rules.colours)?, &path.display().to_string(), weld, rules)
+}
+
+/// Makes a mesh of the contents of a file, which has this name.
+///
+/// # Errors
+/// Names the file, and what is wrong with it.
+pub(crate) fn made_of(contents: Contents, name: &str, weld: Weld, rules: Rules) -> Result<Imported> {
+    let Contents { soup, objects, mut materials, textures, mut ignored, mut faults, mut remarks } = contents;
+    let (mut mesh, sources, report) = mesh::weld_with_sources(&soup, weld).with_context(|| name.to_owned())?;
     let painted = match rules.colours {
         Colours::None => Painted::default(),
         Colours::Corners => paint::paint(&mut mesh, sources, &soup, &mut materials, &textures, None),
@@ -122,7 +128,7 @@ fn welded(path: &Path, bytes: &[u8], folder: &Folder, weld: Weld, rules: Rules) 
     }
     let faults: Vec<String> = faults.sentences().collect();
     if let Some(fault) = faults.first().filter(|_| rules.strict) {
-        bail!("{}: {fault}; --strict refuses it: repair the file, or convert it without --strict", place());
+        bail!("{name}: {fault}; --strict refuses it: repair the file, or convert it without --strict");
     }
     remarks.splice(0..0, faults.iter().cloned());
     if !ignored.is_empty() {

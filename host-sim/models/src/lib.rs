@@ -11,6 +11,7 @@ mod faults;
 mod fields;
 mod files;
 mod foreign;
+pub mod gallery;
 pub mod gltf;
 pub mod import;
 pub mod levels;

@@ -1,10 +1,11 @@
 //! Scenes by name or from a file.
 
+pub use crate::gallery::{GALLERY, LOW_POLY};
 use crate::{
     bytes::StreamBytes,
     convert::{COPPER, Converted, DISTANCE, MARGIN, ORBIT, Options, SQUARE, Steps},
     files::read,
-    foreign,
+    foreign, gallery,
     look::{Lamp, Look, Surface},
     mesh::{self, Mesh, Weld},
     obj,
@@ -69,7 +70,7 @@ pub fn description(name: &str) -> &'static str {
         "gauges" => "three gauges whose needles move, 2 objects each",
         "board" => "a board with 11 pieces, one of which moves",
         "sensor" => "an object with the recorded orientation of a sensor, under a moving light",
-        _ => "",
+        _ => gallery::description(name),
     }
 }
 
@@ -81,10 +82,11 @@ impl fmt::Display for Unknown {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         write!(
             f,
-            "unknown scene {:?}; name a .tri, .obj, .stl, .ply, .gltf, .glb, .3mf or .toml file, or one of: {}, {}, {}",
+            "unknown scene {:?}; name a .tri, .obj, .stl, .ply, .gltf, .glb, .3mf or .toml file, or one of: {}, {}, {}, {}",
             self.0,
             NAMES.join(", "),
             VARIANTS.join(", "),
+            GALLERY.join(", "),
             SCRIPTED.join(", ")
         )
     }
@@ -125,7 +127,7 @@ pub fn load(name_or_path: &str) -> Result<Scene> {
 pub fn load_with(name_or_path: &str, options: &Options, are_given: bool, steps: &dyn Steps) -> Result<Scene> {
     let fixed = |kind, remedy| if are_given { Err(Misplaced { name: name_or_path.to_owned(), kind, remedy }) } else { Ok(()) };
     let built_in = "a built-in scene";
-    if NAMES.contains(&name_or_path) || VARIANTS.contains(&name_or_path) {
+    if NAMES.contains(&name_or_path) || VARIANTS.contains(&name_or_path) || GALLERY.contains(&name_or_path) {
         fixed(built_in, LEAVE_OUT)?;
         let (stream, size) = self::built_in(name_or_path)?;
         return Ok(Scene { name: name_or_path.to_owned(), stream, size });
@@ -198,6 +200,9 @@ fn welded(text: &str) -> Result<Mesh> {
 }
 
 fn built_in(name: &str) -> Result<(StreamBytes, (u32, u32))> {
+    if let Some(exhibit) = gallery::Exhibit::named(name) {
+        return Ok((exhibit.stream()?, gallery::SIZE));
+    }
     let (mesh, look, size) = match name {
         "teapot" => teapot()?,
         "bunny" => bunny()?,

@@ -1,0 +1,127 @@
+//! The models of the gallery: closed, of few triangles, drawn as the reference draws them, and shown in `docs/gallery.png`.
+//!
+//! `MICROPHONG_BLESS=1 cargo test -p microphong-tests gallery` records the picture.
+
+use crate::golden::{bless, check_pixels, root};
+use embedded_graphics::prelude::Size;
+use microphong::{
+    format::Gain,
+    stream::record::{HAS_COLOURS, Material},
+};
+use microphong_sim::{
+    bench::{Bench, Processor, board_styles::Program},
+    compare::Reference,
+    gallery::{Exhibit, GALLERY, LOW_POLY},
+    mesh::{Coloured, Report},
+    render::{self, Format, Settings, Style},
+    scene::{self, Scene},
+    shader::Shader,
+    stress::records::Records,
+    vector::{cross, dot, sub},
+};
+
+fn exhibit(name: &str) -> &'static Exhibit {
+    Exhibit::named(name).unwrap()
+}
+
+/// Welding finds nothing to mend: surfaces are closed, their fronts are outside, and no polygon crosses itself.
+#[test]
+fn models_are_closed_and_have_few_triangles() {
+    for name in GALLERY {
+        let imported = exhibit(name).imported().unwrap();
+        let count = imported.mesh.triangles.len();
+        println!("{name}: {count} triangles, {} of one colour, {} colours", imported.painted.of_one_colour, imported.painted.colours);
+        assert_eq!(imported.report, Report { welded: imported.report.welded, ..Report::default() }, "{name}");
+        assert!(imported.faults.is_empty() && imported.backs == 0 && imported.painted.triangles == count, "{name}");
+        let most = if LOW_POLY.contains(&name) { 1200 } else { 2500 };
+        assert!((300..=most).contains(&count), "{name}: {count} triangles");
+    }
+}
+
+/// The share counts both of all triangles, and of those whose fronts the first frame shows.
+#[test]
+fn half_of_a_low_poly_model_has_triangles_of_one_colour() {
+    for name in LOW_POLY {
+        let mesh = exhibit(name).imported().unwrap().mesh;
+        let view = exhibit(name).view(&mesh);
+        let is_front = |triangle: &usize| {
+            let [a, b, c] = mesh.triangles[*triangle].map(|vertex| view.eye_space(mesh.positions[vertex], 0.0));
+            // Eye space is left-handed.
+            dot(cross(sub(b, a), sub(c, a)), a) > 0.0
+        };
+        let share = |triangles: Vec<usize>| {
+            let is_flat = |triangle: &&usize| mesh.coloured(**triangle).is_some_and(|Coloured { corners: [a, b, c], .. }| a == b && b == c);
+            triangles.iter().filter(is_flat).count() as f64 / triangles.len() as f64
+        };
+        let all = 0..mesh.triangles.len();
+        let shares = [share(all.clone().collect()), share(all.filter(is_front).collect())];
+        println!("{name}: {shares:.3?} of one colour");
+        assert!(shares.iter().all(|share| (0.4..=0.6).contains(share)), "{name}: {shares:.3?}");
+    }
+}
+
+/// The integer arithmetic stays as close to the methods in f64 as in other scenes.
+#[test]
+fn pictures_are_those_of_the_reference() {
+    for name in GALLERY {
+        let scene = scene::load(name).unwrap();
+        let reference = Reference::new(scene.stream.parse().unwrap(), (120, 120), 0).unwrap();
+        for shader in [Shader::GOURAUD, Shader::PHONG, Shader::AUTO] {
+            let found = reference.compare(shader).unwrap();
+            println!("{name} by {}: arithmetic {:?}, all {:?}", shader.name(), found.arithmetic, found.total);
+            assert!(found.arithmetic.max < 1.0 && found.unmatched == 0, "{name} by {}: {:?}", shader.name(), found.arithmetic);
+            assert!(shader == Shader::GOURAUD || found.total.max < 2.0, "{name} by {}: {:?}", shader.name(), found.total);
+        }
+    }
+}
+
+/// All models side by side, as `render --format rgb888` draws them at 240x240.
+#[test]
+fn the_documents_show_the_gallery() {
+    const COLUMNS: usize = 4;
+    const SIDE: usize = 240;
+    let size = Size::new((COLUMNS * SIDE) as u32, (GALLERY.len() / COLUMNS * SIDE) as u32);
+    let style = Style { antialias: true, ..Shader::AUTO.into() };
+    let settings = Settings { size: Size::new_equal(SIDE as u32), style, band_rows: SIDE as u32, format: Format::Rgb888 };
+    let pictures = GALLERY.map(|name| render::picture(scene::load(name).unwrap().stream.parse().unwrap(), &settings, 0).unwrap().rgb);
+    let rows = pictures.chunks(COLUMNS).flat_map(|pictures| (0..SIDE).flat_map(|row| pictures.iter().map(move |picture| (picture, row))));
+    let sheet: Vec<u8> = rows.flat_map(|(picture, row)| &picture[3 * SIDE * row..3 * SIDE * (row + 1)]).copied().collect();
+    assert_eq!(check_pixels(&root().join("../docs/gallery.png"), size, &sheet, bless()), None);
+}
+
+/// The scene in the light of the first lamps, in its colours and in one colour for all of it.
+fn in_colours_and_in_one(scene: &Scene, lamps: usize) -> [Scene; 2] {
+    let mut records = Records::of(&scene.stream.parse().unwrap());
+    assert!(records.meshes.iter().all(|mesh| mesh.flags & HAS_COLOURS != 0));
+    records.lights.truncate(lamps);
+    let mut plain = records.clone().without_colours();
+    for material in &mut plain.materials {
+        let by = |colour: [Gain; 3]| [0, 1, 2].map(|k| Gain::from_num(colour[k].to_num::<f64>() * [0.8, 0.35, 0.12][k]));
+        *material = Material::new(by(material.ambient()), by(material.diffuse()), material.specular(), material.exponent);
+    }
+    [records, plain].map(|records| Scene { stream: records.written().unwrap(), ..scene.clone() })
+}
+
+/// A frame on a Cortex-M3 takes at most this many times the instructions of a frame in one colour. The aims are 1.15, 1.25 and 1.25. `auto` is far
+/// from its aim under two lights, because it then draws one colour nearly as `gouraud` does, and colours at corners as `phong` does.
+const LIMITS: [(Shader, f64); 3] = [(Shader::GOURAUD, 1.4), (Shader::PHONG, 1.8), (Shader::AUTO, 3.6)];
+
+#[test]
+fn costs_of_colours_at_corners_keep_to_their_limits() {
+    let processor = Processor::CortexM3;
+    let [plain, coloured] = [Program::Plain, Program::VERTEX_COLOURS].map(|program| Bench::of_program(&[processor], program).unwrap());
+    let wanted = LIMITS.map(|(shader, _)| (processor, shader));
+    println!("instructions in one colour by the program with colours at corners, and by the one without; with colours: ratios, limit");
+    for (name, lamps) in LOW_POLY.into_iter().flat_map(|name| [(name, 2), (name, 1)]) {
+        let [scene, one] = in_colours_and_in_one(&scene::load(name).unwrap(), lamps);
+        let count = |bench: &Bench, scene| bench.count(scene, &wanted, &|| ()).unwrap().iter().map(|found| found.instructions).collect();
+        let [same, least, with]: [Vec<u64>; 3] = [count(&coloured, &one), count(&plain, &one), count(&coloured, &scene)];
+        for (k, (shader, most)) in LIMITS.iter().enumerate() {
+            let [by_same, by_least] = [same[k], least[k]].map(|before| with[k] as f64 / before as f64);
+            let counts = format!("{:9} {:9} {:9}", same[k], least[k], with[k]);
+            let line = format!("{name:10} lights {lamps} {:8} {counts}: {by_same:.3} {by_least:.3}, {most}", shader.name());
+            println!("{line}");
+            assert!(by_same.max(by_least) < *most, "{line}");
+        }
+    }
+}
