@@ -1,5 +1,6 @@
 //! Smooth outlines against supersampled pictures, and against themselves where nothing may change them.
 
+use crate::vertex_colours;
 use embedded_graphics::{
     pixelcolor::{Gray8, Rgb565, Rgb888},
     prelude::*,
@@ -23,7 +24,7 @@ use microphong_sim::{
     verify,
     view::{Up, View},
 };
-use std::thread;
+use std::{iter::zip, thread};
 
 /// The picture that is compared, and how much larger the one is that it is compared with.
 const SIDE: u32 = 240;
@@ -195,6 +196,39 @@ fn marks_without_room_change_no_pixel() {
     for rows in [1, 9, 50] {
         assert!(draw(stream, size, room(rows), smooth(Shader::GOURAUD), 0, None) == whole, "bands of {rows} rows");
     }
+}
+
+/// Borders between colours of one smooth mesh are smoothed, as borders between materials are: they differ from means of many samples by less than half as
+/// much as jagged ones do. A step of 16 of 255 is no border.
+#[test]
+fn borders_of_colours_are_smooth() {
+    let stripes = |colours: [[u8; 3]; 2]| {
+        let striped = |triangle: usize, _| u8::from(triangle / 25 % 2 == 0);
+        vertex_colours::coloured(vertex_colours::parts("torus"), &colours, striped).with_neighbours().unwrap()
+    };
+    let creases = |stream: &StreamBytes| {
+        stream
+            .parse()
+            .unwrap()
+            .neighbours
+            .iter()
+            .flat_map(|Neighbours(edges)| edges)
+            .filter(|&&edge| edge & CREASE != 0 && edge != OPEN)
+            .count()
+    };
+    let stream = stripes([[200, 30, 20], [230, 220, 200]]);
+    assert!(creases(&stream) > 1000 && creases(&stripes([[200; 3], [216, 200, 184]])) == 0);
+    let stream = stream.parse().unwrap();
+    let fine = supersampled(stream, Shader::GOURAUD, 7);
+    let error = |style: Style| {
+        let (pixels, _) = render::frame::<Rgb888>(stream, Size::new_equal(SIDE), style, SIDE, 7).unwrap();
+        let squares =
+            pixels.iter().zip(&fine).flat_map(|(pixel, (mean, _))| zip(channels(pixel), *mean).map(|(one, other)| (one - other).powi(2)));
+        (squares.sum::<f64>() / (3 * pixels.len()) as f64).sqrt()
+    };
+    let [jagged, smooth] = [Shader::GOURAUD.into(), smooth(Shader::GOURAUD)].map(error);
+    println!("jagged {jagged:.2} smooth {smooth:.2}");
+    assert!(smooth < jagged / 2.0, "{smooth} {jagged}");
 }
 
 /// A pixel that no outline touches stays: on a sphere those whose eight neighbours are covered, too.

@@ -9,7 +9,7 @@ use microphong::{
     Stream,
     stream::{
         self,
-        record::{CREASE, HAS_NEIGHBOURS, Mesh, Neighbours, OPEN, Triangle, Vertex},
+        record::{CREASE, Colour, HAS_NEIGHBOURS, Mesh, Neighbours, OPEN, Vertex},
     },
 };
 use std::collections::HashMap;
@@ -18,8 +18,29 @@ use zerocopy::IntoBytes;
 /// The cosine of the angle between two normals from which on shading jumps visibly: 12 degrees.
 const CREASE_COSINE: f64 = 0.978;
 
-/// An end of an edge.
+/// The difference of two colours, in the channel where it is largest, from which on a border between them is seen: 16 of 255.
+const BORDER: u8 = 16;
+
+/// The place of an end of an edge.
 type Position = [i16; 3];
+
+/// An end of an edge, as a triangle has it.
+#[derive(Clone, Copy)]
+struct End<'s> {
+    vertex: &'s Vertex,
+    /// The colour there, if the corners of triangles have colours.
+    colour: Option<Colour>,
+}
+
+impl End<'_> {
+    /// Whether two triangles differ visibly here.
+    fn jumps(&self, other: &Self) -> bool {
+        let is_border =
+            |one: Colour, other: Colour| one.channels.iter().zip(other.channels).any(|(one, other)| one.abs_diff(other) > BORDER);
+        cosine(self.vertex.normal, other.vertex.normal) < CREASE_COSINE
+            || self.colour.zip(other.colour).is_some_and(|(one, other)| is_border(one, other))
+    }
+}
 
 /// Whether a stream has the neighbours of its triangles.
 #[must_use]
@@ -78,25 +99,29 @@ pub fn with_neighbours(stream: &Stream<'_>) -> Result<Vec<u32>> {
 /// The neighbours of the triangles of one mesh at one level.
 fn of_mesh(stream: &Stream<'_>, mesh: &Mesh) -> Vec<Neighbours> {
     let (triangles, vertices) = (stream.triangles_of(mesh).unwrap_or_default(), stream.vertices_of(mesh).unwrap_or_default());
-    let ends =
-        |triangle: &Triangle, k: usize| [triangle.corners[k], triangle.corners[(k + 1) % 3]].map(|corner| &vertices[usize::from(corner)]);
-    let mut sides: HashMap<[Position; 2], Vec<(usize, [&Vertex; 2])>> = HashMap::new();
-    for (index, triangle) in triangles.iter().enumerate() {
+    let colours = stream.colours_of(mesh);
+    let end = |triangle: usize, corner: usize| End {
+        vertex: &vertices[usize::from(triangles[triangle].corners[corner])],
+        colour: colours.map(|colours| colours.palette[usize::from(colours.corners[triangle].colours[corner])]),
+    };
+    let ends = |triangle: usize, k: usize| [end(triangle, k), end(triangle, (k + 1) % 3)];
+    let places = |ends: [End<'_>; 2]| ends.map(|end| end.vertex.position);
+    let mut sides: HashMap<[Position; 2], Vec<(usize, [End<'_>; 2])>> = HashMap::new();
+    for triangle in 0..triangles.len() {
         for k in 0..3 {
             let ends = ends(triangle, k);
-            sides.entry(ends.map(|end| end.position)).or_default().push((index, ends));
+            sides.entry(places(ends)).or_default().push((triangle, ends));
         }
     }
-    let neighbour = |index: usize, [from, to]: [&Vertex; 2]| {
+    let neighbour = |triangle: usize, [from, to]: [End<'_>; 2]| {
         let none = &Vec::new();
-        let (own, others) = (&sides[&[from.position, to.position]], sides.get(&[to.position, from.position]).unwrap_or(none));
+        let (own, others) = (&sides[&places([from, to])], sides.get(&places([to, from])).unwrap_or(none));
         // Of three surfaces that meet at an edge, each ends there.
         let ([_], [(other, [other_to, other_from])]) = (own.as_slice(), others.as_slice()) else { return OPEN };
-        let jumps = [(from, other_from), (to, other_to)].into_iter().any(|(one, other)| cosine(one.normal, other.normal) < CREASE_COSINE);
-        if *other == index { OPEN } else { *other as u16 | if jumps { CREASE } else { 0 } }
+        let jumps = from.jumps(other_from) || to.jumps(other_to);
+        if *other == triangle { OPEN } else { *other as u16 | if jumps { CREASE } else { 0 } }
     };
-    let of_triangle = |(index, triangle): (usize, &Triangle)| Neighbours([0, 1, 2].map(|k| neighbour(index, ends(triangle, k))));
-    triangles.iter().enumerate().map(of_triangle).collect()
+    (0..triangles.len()).map(|triangle| Neighbours([0, 1, 2].map(|k| neighbour(triangle, ends(triangle, k))))).collect()
 }
 
 /// The cosine of the angle between two normals.

@@ -152,7 +152,7 @@ pub struct Sum {
 }
 
 /// Fraction bits of a cosine that is multiplied by a diffuse level.
-pub(crate) const FACTOR: u32 = CHANNEL - LEVEL;
+pub(super) const FACTOR: u32 = CHANNEL - LEVEL;
 /// The diffuse level of [`OneLightRgb`] at cosine 1 is 2 to this power: half of the walked range, so that cosines and their overshoots fit.
 const FULL_BITS: u32 = 7;
 
@@ -228,22 +228,6 @@ impl<C> OneLightRgb<'_, C> {
 }
 
 impl<C: Pixel> OneLightRgb<'_, C> {
-    /// Whether no level exceeds 255 up to a cosine, Q1.15, without a highlight. Levels that are close to 255 count as larger.
-    #[inline(always)]
-    pub(crate) fn stays_within(&self, cosine: i32) -> bool {
-        let [r, g, b] = self.0.now();
-        let level = |sum: &Sum| sum.ambient.wrapping_add(sum.diffuse.wrapping_mul(cosine));
-        level(r).max(level(g)).max(level(b)) <= 255 << CHANNEL
-    }
-
-    /// The colour at a cosine, Q1.15, without a highlight.
-    #[inline(always)]
-    pub(crate) fn diffuse_at(&self, cosine: i32) -> C {
-        let [r, g, b] = self.0.now();
-        let level = |sum: &Sum| sum.ambient.wrapping_add(sum.diffuse.wrapping_mul(cosine));
-        C::mixed([level(r), level(g), level(b)])
-    }
-
     /// The colour of one cosine, Q1.15, and a highlight, unsigned Q0.16, on even rows and on odd ones.
     #[inline(always)]
     pub fn by_turns(&self, cosine: i32, highlight: u32) -> [C::Stored; 2] {
@@ -284,7 +268,9 @@ impl<C: Pixel> Shades<WithHighlight> for OneLightRgb<'_, C> {
 impl<C: Pixel> Shades<DiffuseOnly> for OneLightRgb<'_, C> {
     #[inline(always)]
     fn colour(&self, bits: u32, DiffuseOnly(diffuse): DiffuseOnly) -> C {
-        self.diffuse_at(cosine(bits, diffuse))
+        let ([r, g, b], cosine) = (self.0.now(), cosine(bits, diffuse));
+        let level = |sum: &Sum| sum.ambient.wrapping_add(sum.diffuse.wrapping_mul(cosine));
+        C::mixed([level(r), level(g), level(b)])
     }
 }
 
@@ -349,6 +335,68 @@ impl<C: Pixel> NeutralRgb<C> {
         let is_same = more_r == more_b && r.ambient == b.ambient && r.diffuse == b.diffuse && r.specular == b.specular;
         let pure = |sum: &Sum, more: i32| sum.raised(more.wrapping_neg());
         is_same.then_some(Self { outer: pure(r, more_r), middle: pure(g, more_g), rounding: ByTurns::new([even, odd]) })
+    }
+}
+
+/// A surface of one colour under light without a hue: each channel is a share of one level.
+#[derive(Clone, Copy, Debug)]
+pub struct Tint<C> {
+    /// The shares of red, green and blue, Q1.15.
+    shares: [i32; 3],
+    /// What is added to red and blue, and to green, for rounding and dither, Q10.22.
+    added: ByTurns<(i32, i32), C>,
+}
+
+/// One level of [`Tint`]: that of red and blue of a white surface.
+#[derive(Clone, Copy, Debug)]
+pub(crate) struct TintLevel {
+    ambient: i32,
+    diffuse: i32,
+}
+
+impl TintLevel {
+    /// The level at N·L, Q2.30; the result is Q9.7.
+    #[inline(always)]
+    pub(crate) fn at(self, cosine: i32) -> i32 {
+        self.ambient + ((self.diffuse * (cosine.clamp(0, 1 << COSINE) >> (COSINE - FACTOR)) + (1 << (FACTOR - 1))) >> FACTOR)
+    }
+}
+
+impl<C: Pixel> NeutralRgb<C> {
+    /// The level and the colour of a surface with these shares, Q0.16, `raise` (Q9.7) higher; `None` if green is not lit as red and blue are.
+    #[inline(always)]
+    pub(super) fn tint(&self, [red, green, blue]: [i32; 3], raise: i32) -> Option<(TintLevel, Tint<C>)> {
+        let Self { outer, middle, rounding } = self;
+        // The largest levels of channels are as 1 - 2^-bits.
+        let [full, full_green] = [0, 1].map(|k| (1 << 8) - (1 << (8 - C::LEVELS[k])));
+        let is_alike = |outer: i32, middle: i32, slack: i32| (outer * full_green).wrapping_sub(middle * full).abs() <= slack;
+        let level = TintLevel { ambient: outer.ambient >> FACTOR, diffuse: outer.diffuse };
+        if !(is_alike(level.ambient, middle.ambient >> FACTOR, 1 << 9) && is_alike(outer.diffuse, middle.diffuse, 1 << 8)) {
+            return None;
+        }
+        let added = rounding.map(|rounding| {
+            let [r, g, _] = steps(C::LEVELS, rounding);
+            (r.wrapping_add(raise << FACTOR), g.wrapping_add(raise << FACTOR))
+        });
+        let green = if full == full_green { green } else { green * full_green / full };
+        Some((level, Tint { shares: [(red + 1) >> 1, (green + 1) >> 1, (blue + 1) >> 1], added }))
+    }
+}
+
+impl<C: Pixel> Tint<C> {
+    /// The colour at a level, Q10.22.
+    #[inline(always)]
+    pub(crate) fn lit(&self, level: u32) -> C {
+        let ([red, green, blue], level, (more, green_more)) = (self.shares, (level >> FACTOR) as i32, self.added.now());
+        let channel = |share: i32, more: i32| more.wrapping_add(level.wrapping_mul(share));
+        C::mixed([channel(red, more), channel(green, green_more), channel(blue, more)])
+    }
+}
+
+impl<C: Pixel> ByRows for Tint<C> {
+    #[inline(always)]
+    fn step_row(&mut self) {
+        self.added.step_row();
     }
 }
 

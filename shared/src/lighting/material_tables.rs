@@ -5,7 +5,7 @@ use crate::{
     format::{BIAS, CHANNEL, COSINE, FULL, INTENSITY, LEVEL, WALK},
     lighting::{
         albedo::Albedo,
-        constant_lights::{ColouredRgb, FACTOR, NeutralRgb, OneLightRamp, OneLightRgb, SummedRgb, Sums, TwoLightsRgb},
+        constant_lights::{ColouredRgb, FACTOR, NeutralRgb, OneLightRamp, OneLightRgb, SummedRgb, Sums, Tint, TintLevel, TwoLightsRgb},
         reflectance::{LitMaterial, Reflectance},
     },
     math::vector::zip,
@@ -101,13 +101,19 @@ impl<'a, C: Pixel> MaterialTables<'a, C> {
         NeutralRgb::new(even, self.reflectance.quarter())
     }
 
-    /// The sums of [`Self::one_light_rgb`] on a surface of this colour, `raise` (Q9.7) higher, for even rows and for odd ones.
+    /// The level and the colour of a surface of one colour, `raise` (Q9.7) higher, if the light has no hue.
     #[inline(never)]
-    pub(crate) fn painted_sums(&self, albedo: Albedo, raise: i32) -> [Sums; 2] {
+    pub(crate) fn tint_of(&self, albedo: Albedo, raise: i32) -> Option<(TintLevel, Tint<C>)> {
+        self.neutral_rgb()?.tint(albedo.shares(), raise)
+    }
+
+    /// The sums of [`Self::one_light_rgb`] on a surface of this colour, for even rows and for odd ones.
+    #[inline(never)]
+    pub(crate) fn painted_sums(&self, albedo: Albedo) -> [Sums; 2] {
         let ([[even, ..], [odd, ..]], ambient) = (&self.reflectance.reflectance().sums, self.reflectance.pure_ambient());
         [even, odd].map(|sums| {
             zip(*sums, zip(ambient, albedo.shares(), |ambient, share| (ambient, share)), |sum, (ambient, share)| {
-                sum.painted(ambient, share).raised(raise << FACTOR)
+                sum.painted(ambient, share)
             })
         })
     }

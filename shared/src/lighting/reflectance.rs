@@ -391,6 +391,12 @@ impl Reflectance {
         zip(map(*first, Sum::ambient), raised, i32::wrapping_sub)
     }
 
+    /// A level, Q9.7, of sums as vertices hold them. Domain: [`Self::sums_lights`].
+    #[inline]
+    pub(crate) fn summed_level(&self, sum: i32) -> i32 {
+        sum >> (FACTOR - self.excess())
+    }
+
     /// Turns two savings on or off: leaving out highlights where none can be seen, and lights that do not reach a triangle.
     #[cfg(feature = "skips")]
     pub(crate) fn leave_out(&mut self, highlights: bool, lights: bool) {

@@ -591,7 +591,7 @@ pub struct Neighbours(
 /// The edge has no neighbour in the mesh: the surface ends there, or another material begins.
 pub const OPEN: u16 = 0x7FFF;
 
-/// The shading of the two triangles at the edge differs, because their normals do.
+/// The shading of the two triangles at the edge differs, because their normals or the colours of their corners do.
 pub const CREASE: u16 = 0x8000;
 
 /// Two triangles of the stream that cut each other. `microphong convert --antialias` lists them, so that antialiasing finds the line between them.

@@ -3,11 +3,13 @@
 use super::costs::SAVINGS;
 use crate::{
     features::PERSPECTIVE,
-    format::FULL,
+    format::{FULL, NORMAL_LENGTH},
     lighting::{
-        albedo::{Albedo, SHARE},
+        albedo::{Albedo, Parts, SHARE},
         reflectance::LitMaterial,
+        summed::{LEAST_LENGTH, Sides},
     },
+    math::vector::zip,
     method::{
         CornerCosines, Shading, TriangleSetup,
         auto::error_bound::{Curvature, Interval, LinearBound, of_product},
@@ -56,6 +58,8 @@ pub fn choose<const QUADRATICS: bool>(setup: &TriangleSetup<'_>, shading: &Shadi
         under_one_light::<QUADRATICS>(setup, shading)
     } else if shading.reflectance.has_two_lights() && shading.lighting.is_constant() {
         under_two_lights::<QUADRATICS>(setup, shading)
+    } else if shading.reflectance.sums_lights() {
+        under_summed_lights(setup, shading).unwrap_or(Choice::Phong)
     } else {
         Choice::Phong
     }
@@ -218,6 +222,37 @@ fn two_lights(
     linear_raise(setup, interval, budget, range).map(Choice::Linear)
 }
 
+/// One colour or linear interpolation where the light of several lights is summed; `None` if one of them ends on the triangle or may have a highlight
+/// there, so that there are no bounds, or if levels of the corners may have been clamped at 255.
+#[inline(never)]
+fn under_summed_lights(setup: &TriangleSetup<'_>, shading: &Shading<'_>) -> Option<Choice> {
+    let (curvature, budget, reflectance) = (Curvature::of(setup.triangle)?, shading.budget, shading.reflectance);
+    let [a, b, c] = setup.corners.map(|corner| corner.light);
+    let is_long = setup.triangle.min_normal_length >= LEAST_LENGTH << (NORMAL_LENGTH - 4);
+    if !is_long || setup.has_texture() || !Sides::of_triangle([a[3], b[3], c[3]]).are_whole(shading.lighting.sources().len()) {
+        return None;
+    }
+    let [red, green, blue] = [extremes([a[0], b[0], c[0]]), extremes([a[1], b[1], c[1]]), extremes([a[2], b[2], c[2]])];
+    let extremes = [red[0].min(green[0]).min(blue[0]), red[1].max(green[1]).max(blue[1])].map(|sum| reflectance.summed_level(sum));
+    let mut interval = Interval::of_sum(curvature, extremes);
+    if let Some(albedos) = setup.albedos() {
+        let range = (red[1] - red[0]).max(green[1] - green[0]).max(blue[1] - blue[0]);
+        interval = interval.widened(of_product(Albedo::range(albedos), reflectance.summed_level(range) as u32 + 1));
+    }
+    if interval.half() > budget {
+        return None;
+    }
+    let levels = corner_levels(setup, reflectance);
+    if levels.as_flattened().iter().any(|&level| level >= FULL) {
+        return None;
+    }
+    let range = largest_range(levels);
+    if interval.half() + (range >> 1) < budget {
+        return Some(Choice::Solid(interval.middle()));
+    }
+    linear_raise(setup, interval, budget, || range).map(Choice::Linear)
+}
+
 /// By how much levels are raised so that linear interpolation, whose errors lie in `interval`, keeps to the budget; `None` if it does not in
 /// perspective. Levels at the corners differ by `range`.
 #[inline(always)]
@@ -229,9 +264,18 @@ fn linear_raise(setup: &TriangleSetup<'_>, interval: Interval, budget: u32, rang
     (interval.half() <= rest).then(|| interval.raise(rest))
 }
 
-/// The levels at the corners under two constant lights.
+/// The levels at the corners under two constant lights, or where the diffuse light of several is summed.
 #[inline(never)]
 pub(super) fn corner_levels(setup: &TriangleSetup<'_>, reflectance: LitMaterial<'_>) -> [[i32; 3]; 3] {
     let [a, b, c] = setup.corners;
+    if reflectance.sums_lights() {
+        let ambient = reflectance.pure_ambient();
+        let parts = |[red, green, blue, _]: [i32; 4]| {
+            let diffuse = zip(ambient, [red, green, blue], |ambient, sum| reflectance.summed_level(ambient.wrapping_add(sum)));
+            Parts { diffuse, specular: [0; 3] }
+        };
+        let [x, y, z] = setup.albedos().copied().unwrap_or([Albedo::WHITE; 3]);
+        return [x.lit(parts(a.light)), y.lit(parts(b.light)), z.lit(parts(c.light))];
+    }
     [reflectance.two_lights(a.light), reflectance.two_lights(b.light), reflectance.two_lights(c.light)]
 }

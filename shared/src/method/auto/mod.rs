@@ -86,6 +86,13 @@ fn half_way_parts(setup: &TriangleSetup<'_>, reflectance: &Reflectance) -> Parts
 #[inline(never)]
 fn middle(setup: &TriangleSetup<'_>, shading: &Shading<'_>, raises: [i32; 3]) -> [i32; 3] {
     let reflectance = shading.reflectance;
+    if reflectance.sums_lights() {
+        let [red, green, blue] = channels(corner_levels(setup, reflectance)).map(|levels| {
+            let [least, most] = extremes(levels);
+            (least + most) >> 1
+        });
+        return zip([red, green, blue], raises, |level, raise| (level + raise).clamp(0, FULL));
+    }
     if let Some(albedos) = setup.albedos() {
         return zip(Albedo::half_way(albedos).lit(half_way_parts(setup, &reflectance)), raises, |level, raise| {
             (level + raise).clamp(0, FULL)

@@ -190,7 +190,7 @@ fn draw_coloured<C: Pixel>(
     }
     let [a, b, c] = *albedos;
     if a == b && b == c {
-        let sums = &tables.painted_sums(a, 0);
+        let sums = &tables.painted_sums(a);
         if setup.leaves_out_highlight(tables.reflectance, &cosines[1]) {
             setup.count(band.top, &mut band.counts.without_highlight, 1);
             let (colours, at) = (OneLightRgb::of(sums), Quotient(HalfRsqrt::get()));

@@ -6,7 +6,7 @@
 
 use crate::{
     features::{PERSPECTIVE, VERTEX_COLOURS},
-    format::COSINE,
+    format::{CHANNEL, FULL, LEVEL},
     geometry::projection::ScreenVertex,
     interpolate::{
         by_column::ByColumn,
@@ -15,16 +15,16 @@ use crate::{
     },
     lighting::{
         albedo::{Albedo, IfColoured, Parts},
-        constant_lights::{FACTOR, OneLightRgb},
+        constant_lights::Tint,
         material_tables::MaterialTables,
         reflectance::Reflectance,
     },
     math::vector::zip,
     method::{
-        Facts, LinearWay, Loops, Method, RANGE, Shading, Style, TriangleSetup, VertexLight, channels, fit_levels, largest_range,
+        Facts, LinearWay, Loops, Method, RANGE, Shading, Style, TriangleSetup, VertexLight, channels, fit_levels, largest, largest_range,
         node::mixed, texture,
     },
-    pixel::{Pixel, by_rows::ByRows},
+    pixel::Pixel,
     raster::{
         band::Band,
         canvas::Canvas,
@@ -137,12 +137,11 @@ pub(crate) fn draw_three<C: Pixel>(
         && albedo == second
         && albedo == third
         && a.light[2] | b.light[2] | c.light[2] == 0
+        && let Some((level, tint)) = tables.tint_of(albedo, raise)
     {
-        let sums = &tables.painted_sums(albedo, raise);
-        let colours = OneLightRgb::of(sums);
-        let most = a.light[0].max(b.light[0]).max(c.light[0]);
-        if colours.stays_within(cosine_of(most)) {
-            return draw_tinted(setup, colours, band);
+        let nodes = [level.at(a.light[0]), level.at(b.light[0]), level.at(c.light[0])];
+        if largest(&nodes) <= FULL {
+            return draw_tinted(setup, nodes, tint, band);
         }
     }
     let channels = || {
@@ -152,39 +151,19 @@ pub(crate) fn draw_three<C: Pixel>(
     shading.fill_three(setup, channels, raise, |plane| plane, band)
 }
 
-/// Draws a triangle of one colour under one constant light without a highlight: each channel is a product of one walked cosine. Returns the number of
-/// its pixels in `band`.
+/// Draws a triangle of one colour, under light without a hue that has these levels at the corners: each channel is a product of one walked level.
+/// Returns the number of its pixels in `band`.
 #[inline(never)]
-fn draw_tinted<C: Pixel>(setup: &TriangleSetup<'_>, colours: OneLightRgb<'_, C>, band: &mut Band<'_, C>) -> u32 {
-    let cosines = || {
-        let nodes = setup.corners.map(|corner| cosine_of(corner.light[0]));
-        Nodes::<3, 1, { FACTOR + 1 }>::new([nodes], COSINE - FACTOR).fit(setup.gradients)
-    };
-    setup.fill(cosines, Tinted(colours), band)
+fn draw_tinted<C: Pixel>(setup: &TriangleSetup<'_>, nodes: [i32; 3], tint: Tint<C>, band: &mut Band<'_, C>) -> u32 {
+    setup.fill(|| Nodes::<3, 1, RANGE>::new([nodes], CHANNEL - LEVEL).fit(setup.gradients), tint, band)
 }
 
-/// A cosine, Q2.30, as sums take it: Q1.15 from 0 to 1.
-fn cosine_of(cosine: i32) -> i32 {
-    cosine.clamp(0, (1 << COSINE) - 1) >> (COSINE - FACTOR)
-}
-
-/// One walked cosine, Q2.30, on a surface of one colour.
-#[derive(Clone, Copy)]
-struct Tinted<'a, C>(OneLightRgb<'a, C>);
-
-impl<C: Pixel> ByRows for Tinted<'_, C> {
-    #[inline(always)]
-    fn step_row(&mut self) {
-        self.0.step_row();
-    }
-}
-
-impl<C: Pixel> PixelShader<[u32; 1]> for Tinted<'_, C> {
+impl<C: Pixel> PixelShader<[u32; 1]> for Tint<C> {
     type Pixel = C;
 
     #[inline(always)]
-    fn shade(&self, [cosine]: [u32; 1]) -> C {
-        self.0.diffuse_at((cosine >> (COSINE - FACTOR)) as i32)
+    fn shade(&self, [level]: [u32; 1]) -> C {
+        self.lit(level)
     }
 }
 
