@@ -719,6 +719,14 @@ impl<'f> LitMaterial<'f> {
         parts
     }
 
+    /// Adds the highlight of light number `light` at N·H, Q2.30.
+    #[inline]
+    pub(crate) fn add_highlight(self, parts: &mut Parts, light: usize, half: i32) {
+        if let Some(gains) = self.gains.get(light) {
+            parts.add(gains, 0, self.highlight(half));
+        }
+    }
+
     /// Levels under constant lights, Q9.7 in [0, 255], of a unit normal.
     #[inline(never)]
     #[must_use]

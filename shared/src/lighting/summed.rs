@@ -54,11 +54,11 @@ impl Sides {
         self.has(Self::HIGHLIGHT, light)
     }
 
-    /// Whether each of `lights` reaches all of the triangle or nothing of it, and none may have a highlight there.
+    /// Whether each of `lights` reaches all of the triangle or nothing of it.
     #[inline]
     pub(crate) fn are_whole(self, lights: usize) -> bool {
         let all = (1u32 << (lights as u32 & 31)) - 1;
-        (self.0 | self.0 >> KIND) & all == all && self.0 & (Self::HIGHLIGHT.0 * 0xff) == 0
+        (self.0 | self.0 >> KIND) & all == all
     }
 
     #[inline]

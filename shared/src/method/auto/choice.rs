@@ -6,7 +6,6 @@ use crate::{
     format::{FULL, NORMAL_LENGTH},
     lighting::{
         albedo::{Albedo, Parts, SHARE},
-        reflectance::LitMaterial,
         summed::{LEAST_LENGTH, Sides},
     },
     math::vector::zip,
@@ -209,7 +208,7 @@ fn two_lights(
 ) -> Option<Choice> {
     let LinearBound { interval, brightest, has_highlight } = bounds;
     let Shading { error_bounds: limits, budget, .. } = *shading;
-    if brightest as i32 >= FULL && corner_levels(setup, shading.reflectance).as_flattened().iter().any(|&level| level >= FULL) {
+    if brightest as i32 >= FULL && corner_levels(setup, shading).as_flattened().iter().any(|&level| level >= FULL) {
         return None;
     }
     if !has_highlight {
@@ -218,23 +217,23 @@ fn two_lights(
             return Some(Choice::Solid(interval.middle()));
         }
     }
-    let range = || largest_range(corner_levels(setup, shading.reflectance));
+    let range = || largest_range(corner_levels(setup, shading));
     linear_raise(setup, interval, budget, range).map(Choice::Linear)
 }
 
-/// One colour or linear interpolation where the light of several lights is summed; `None` if one of them ends on the triangle or may have a highlight
-/// there, so that there are no bounds, or if levels of the corners may have been clamped at 255.
+/// One colour or linear interpolation where the light of several lights is summed; `None` if one of them ends on the triangle, so that there are no
+/// bounds, or if levels of the corners may have been clamped at 255.
 #[inline(never)]
 fn under_summed_lights(setup: &TriangleSetup<'_>, shading: &Shading<'_>) -> Option<Choice> {
-    let (curvature, budget, reflectance) = (Curvature::of(setup.triangle)?, shading.budget, shading.reflectance);
+    let Shading { reflectance, lighting, error_bounds, budget, .. } = *shading;
+    let curvature = Curvature::of(setup.triangle)?;
     let [a, b, c] = setup.corners.map(|corner| corner.light);
-    let is_long = setup.triangle.min_normal_length >= LEAST_LENGTH << (NORMAL_LENGTH - 4);
-    if !is_long || setup.has_texture() || !Sides::of_triangle([a[3], b[3], c[3]]).are_whole(shading.lighting.sources().len()) {
+    if setup.has_texture() || !Sides::of_triangle([a[3], b[3], c[3]]).are_whole(lighting.sources().len()) {
         return None;
     }
     let [red, green, blue] = [extremes([a[0], b[0], c[0]]), extremes([a[1], b[1], c[1]]), extremes([a[2], b[2], c[2]])];
-    let extremes = [red[0].min(green[0]).min(blue[0]), red[1].max(green[1]).max(blue[1])].map(|sum| reflectance.summed_level(sum));
-    let mut interval = Interval::of_sum(curvature, extremes);
+    let sums = [red[0].min(green[0]).min(blue[0]), red[1].max(green[1]).max(blue[1])].map(|sum| reflectance.summed_level(sum));
+    let mut interval = Interval::of_sum(curvature, sums);
     if let Some(albedos) = setup.albedos() {
         let range = (red[1] - red[0]).max(green[1] - green[0]).max(blue[1] - blue[0]);
         interval = interval.widened(of_product(Albedo::range(albedos), reflectance.summed_level(range) as u32 + 1));
@@ -242,7 +241,16 @@ fn under_summed_lights(setup: &TriangleSetup<'_>, shading: &Shading<'_>) -> Opti
     if interval.half() > budget {
         return None;
     }
-    let levels = corner_levels(setup, reflectance);
+    for (light, half) in summed_highlights(setup, shading) {
+        let [_, specular] = reflectance.largest_gains(light);
+        if let Some(error) = error_bounds.linear_highlight(curvature, &half, specular) {
+            interval = interval.plus(error);
+        }
+    }
+    if interval.half() > budget {
+        return None;
+    }
+    let levels = corner_levels(setup, shading);
     if levels.as_flattened().iter().any(|&level| level >= FULL) {
         return None;
     }
@@ -251,6 +259,18 @@ fn under_summed_lights(setup: &TriangleSetup<'_>, shading: &Shading<'_>) -> Opti
         return Some(Choice::Solid(interval.middle()));
     }
     linear_raise(setup, interval, budget, || range).map(Choice::Linear)
+}
+
+/// The lights that may have a highlight on a triangle where diffuse light is summed: the number of each, and its N·H at the corners.
+#[inline(always)]
+fn summed_highlights<'s>(setup: &'s TriangleSetup<'_>, shading: &'s Shading<'_>) -> impl Iterator<Item = (usize, [i32; 3])> + 's {
+    let sides = Sides::of_triangle(setup.corners.map(|corner| corner.light[3]));
+    let is_long = setup.triangle.min_normal_length >= LEAST_LENGTH << (NORMAL_LENGTH - 4);
+    shading.lighting.sources().iter().enumerate().filter_map(move |(light, source)| {
+        let may = !source.is_sky() && (!is_long || sides.may_have_highlight(light));
+        let [_, half] = source.directional().filter(|_| may)?;
+        Some((light, setup.corner_cosines(*half)))
+    })
 }
 
 /// By how much levels are raised so that linear interpolation, whose errors lie in `interval`, keeps to the budget; `None` if it does not in
@@ -266,16 +286,20 @@ fn linear_raise(setup: &TriangleSetup<'_>, interval: Interval, budget: u32, rang
 
 /// The levels at the corners under two constant lights, or where the diffuse light of several is summed.
 #[inline(never)]
-pub(super) fn corner_levels(setup: &TriangleSetup<'_>, reflectance: LitMaterial<'_>) -> [[i32; 3]; 3] {
-    let [a, b, c] = setup.corners;
-    if reflectance.sums_lights() {
-        let ambient = reflectance.pure_ambient();
-        let parts = |[red, green, blue, _]: [i32; 4]| {
-            let diffuse = zip(ambient, [red, green, blue], |ambient, sum| reflectance.summed_level(ambient.wrapping_add(sum)));
-            Parts { diffuse, specular: [0; 3] }
-        };
-        let [x, y, z] = setup.albedos().copied().unwrap_or([Albedo::WHITE; 3]);
-        return [x.lit(parts(a.light)), y.lit(parts(b.light)), z.lit(parts(c.light))];
+pub(super) fn corner_levels(setup: &TriangleSetup<'_>, shading: &Shading<'_>) -> [[i32; 3]; 3] {
+    let ([a, b, c], reflectance) = (setup.corners, shading.reflectance);
+    if !reflectance.sums_lights() {
+        return [reflectance.two_lights(a.light), reflectance.two_lights(b.light), reflectance.two_lights(c.light)];
     }
-    [reflectance.two_lights(a.light), reflectance.two_lights(b.light), reflectance.two_lights(c.light)]
+    let ambient = reflectance.pure_ambient();
+    let diffuse = |[red, green, blue, _]: [i32; 4]| {
+        let diffuse = zip(ambient, [red, green, blue], |ambient, sum| reflectance.summed_level(ambient.wrapping_add(sum)));
+        Parts { diffuse, specular: [0; 3] }
+    };
+    let mut parts = [diffuse(a.light), diffuse(b.light), diffuse(c.light)];
+    for (light, half) in summed_highlights(setup, shading) {
+        parts.iter_mut().zip(half).for_each(|(parts, half)| reflectance.add_highlight(parts, light, half));
+    }
+    let albedos = setup.albedos().copied().unwrap_or([Albedo::WHITE; 3]);
+    zip(albedos, parts, Albedo::lit)
 }

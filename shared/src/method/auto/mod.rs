@@ -87,7 +87,7 @@ fn half_way_parts(setup: &TriangleSetup<'_>, reflectance: &Reflectance) -> Parts
 fn middle(setup: &TriangleSetup<'_>, shading: &Shading<'_>, raises: [i32; 3]) -> [i32; 3] {
     let reflectance = shading.reflectance;
     if reflectance.sums_lights() {
-        let [red, green, blue] = channels(corner_levels(setup, reflectance)).map(|levels| {
+        let [red, green, blue] = channels(corner_levels(setup, shading)).map(|levels| {
             let [least, most] = extremes(levels);
             (least + most) >> 1
         });
@@ -157,7 +157,7 @@ impl<const QUADRATICS: bool> Method for Auto<QUADRATICS> {
             (Choice::Linear(_), _) if setup.has_texture() => setup.draw_parts(gouraud::corner_parts(setup, shading), canvas),
             (Choice::Solid(_), _) => draw_uniform(setup, middle(setup, shading, raises), canvas),
             (Choice::Linear(_), constant) => {
-                let levels = if constant.is_some() { gouraud::reflected(setup, &reflectance) } else { corner_levels(setup, reflectance) };
+                let levels = if constant.is_some() { gouraud::reflected(setup, &reflectance) } else { corner_levels(setup, shading) };
                 shading.draw_channels::<3, RANGE>(setup, &channels(levels), raises, canvas)
             }
             (Choice::Quadratic, Some(_)) if QUADRATICS => SixPoint.shade(setup, shading, canvas),
@@ -199,7 +199,7 @@ impl<const QUADRATICS: bool> Loops for Auto<QUADRATICS> {
         match choice {
             Choice::Solid(raise) => Some(setup.fill(|| Constant, Solid::face(solid(setup, shading, raise, tables)), band)),
             Choice::Linear(raise) if under_two => {
-                let channels = || channels(corner_levels(setup, shading.reflectance));
+                let channels = || channels(corner_levels(setup, shading));
                 Some(shading.fill_three(setup, channels, raise, |plane| plane, band))
             }
             Choice::Linear(raise) if THREE => Some(gouraud::draw_three(setup, shading, raise, tables, band)),
