@@ -397,6 +397,12 @@ impl Reflectance {
         sum >> (FACTOR - self.excess())
     }
 
+    /// The level of a whole highlight of a light, Q9.7, in the channel where it is largest. Domain: [`Self::sums_lights`].
+    #[inline]
+    pub(crate) fn specular_level(&self, light: usize) -> u32 {
+        self.gains.get(light).map_or(0, |&Gains { specular: [r, g, b], .. }| r.max(g).max(b).into())
+    }
+
     /// Turns two savings on or off: leaving out highlights where none can be seen, and lights that do not reach a triangle.
     #[cfg(feature = "skips")]
     pub(crate) fn leave_out(&mut self, highlights: bool, lights: bool) {

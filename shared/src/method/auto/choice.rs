@@ -4,11 +4,13 @@ use super::costs::SAVINGS;
 use crate::{
     features::PERSPECTIVE,
     format::{FULL, NORMAL_LENGTH},
+    geometry::projection::ScreenVertex,
     lighting::{
         albedo::{Albedo, Parts, SHARE},
+        lights::vertex_cosine,
         summed::{LEAST_LENGTH, Sides},
     },
-    math::vector::zip,
+    math::vector::wide,
     method::{
         CornerCosines, Shading, TriangleSetup,
         auto::error_bound::{Curvature, Interval, LinearBound, of_product},
@@ -16,6 +18,7 @@ use crate::{
     },
     raster::counts::Counts,
     setup::edge::COLUMNS,
+    stream::record::Vertex,
 };
 
 /// A way to draw a triangle.
@@ -234,43 +237,43 @@ fn under_summed_lights(setup: &TriangleSetup<'_>, shading: &Shading<'_>) -> Opti
     let [red, green, blue] = [extremes([a[0], b[0], c[0]]), extremes([a[1], b[1], c[1]]), extremes([a[2], b[2], c[2]])];
     let sums = [red[0].min(green[0]).min(blue[0]), red[1].max(green[1]).max(blue[1])].map(|sum| reflectance.summed_level(sum));
     let mut interval = Interval::of_sum(curvature, sums);
+    let diffuse = reflectance.summed_level((red[1] - red[0]).max(green[1] - green[0]).max(blue[1] - blue[0])) as u32 + 1;
     if let Some(albedos) = setup.albedos() {
-        let range = (red[1] - red[0]).max(green[1] - green[0]).max(blue[1] - blue[0]);
-        interval = interval.widened(of_product(Albedo::range(albedos), reflectance.summed_level(range) as u32 + 1));
+        interval = interval.widened(of_product(Albedo::range(albedos), diffuse));
     }
     if interval.half() > budget {
         return None;
     }
-    for (light, half) in summed_highlights(setup, shading) {
-        let [_, specular] = reflectance.largest_gains(light);
-        if let Some(error) = error_bounds.linear_highlight(curvature, &half, specular) {
-            interval = interval.plus(error);
+    let sides = Sides::of_triangle([a[3], b[3], c[3]]);
+    let is_long = setup.triangle.min_normal_length >= LEAST_LENGTH << (NORMAL_LENGTH - 4);
+    let (mut bounds, mut varies) = (LinearBound { interval, brightest: sums[1].max(0) as u32, has_highlight: false }, false);
+    for (light, source) in lighting.sources().iter().enumerate() {
+        if let Some([_, half]) = source.directional()
+            && !source.is_sky()
+            && (!is_long || sides.may_have_highlight(light))
+        {
+            let half = setup.corner_cosines(*half);
+            error_bounds.add_linear_highlight(curvature, &half, reflectance.specular_level(light), &mut bounds);
+            let [at_a, at_b, at_c] = half;
+            varies |= at_a != at_b || at_a != at_c;
         }
     }
+    let LinearBound { interval, brightest, has_highlight } = bounds;
     if interval.half() > budget {
         return None;
     }
-    let levels = corner_levels(setup, shading);
-    if levels.as_flattened().iter().any(|&level| level >= FULL) {
+    let brightest = brightest + reflectance.summed_level(largest(&reflectance.pure_ambient())) as u32 + 1;
+    if brightest as i32 >= FULL && corner_levels(setup, shading).as_flattened().iter().any(|&level| level >= FULL) {
         return None;
     }
-    let range = largest_range(levels);
-    if interval.half() + (range >> 1) < budget {
+    let range = || match has_highlight && varies {
+        true => largest_range(corner_levels(setup, shading)),
+        false => diffuse + setup.albedos().map_or(0, |albedos| ((Albedo::range(albedos) * brightest.min(1 << SHARE)) >> SHARE) + 1),
+    };
+    if interval.half() + (diffuse >> 1) < budget && interval.half() + (range() >> 1) < budget {
         return Some(Choice::Solid(interval.middle()));
     }
-    linear_raise(setup, interval, budget, || range).map(Choice::Linear)
-}
-
-/// The lights that may have a highlight on a triangle where diffuse light is summed: the number of each, and its N·H at the corners.
-#[inline(always)]
-fn summed_highlights<'s>(setup: &'s TriangleSetup<'_>, shading: &'s Shading<'_>) -> impl Iterator<Item = (usize, [i32; 3])> + 's {
-    let sides = Sides::of_triangle(setup.corners.map(|corner| corner.light[3]));
-    let is_long = setup.triangle.min_normal_length >= LEAST_LENGTH << (NORMAL_LENGTH - 4);
-    shading.lighting.sources().iter().enumerate().filter_map(move |(light, source)| {
-        let may = !source.is_sky() && (!is_long || sides.may_have_highlight(light));
-        let [_, half] = source.directional().filter(|_| may)?;
-        Some((light, setup.corner_cosines(*half)))
-    })
+    linear_raise(setup, interval, budget, range).map(Choice::Linear)
 }
 
 /// By how much levels are raised so that linear interpolation, whose errors lie in `interval`, keeps to the budget; `None` if it does not in
@@ -291,15 +294,43 @@ pub(super) fn corner_levels(setup: &TriangleSetup<'_>, shading: &Shading<'_>) ->
     if !reflectance.sums_lights() {
         return [reflectance.two_lights(a.light), reflectance.two_lights(b.light), reflectance.two_lights(c.light)];
     }
-    let ambient = reflectance.pure_ambient();
-    let diffuse = |[red, green, blue, _]: [i32; 4]| {
-        let diffuse = zip(ambient, [red, green, blue], |ambient, sum| reflectance.summed_level(ambient.wrapping_add(sum)));
-        Parts { diffuse, specular: [0; 3] }
+    let [r, g, b] = match uniform_parts(setup, shading) {
+        Some(parts) => [parts; 3],
+        None => {
+            let ([x, y, z], ambient) = (setup.vertices(), reflectance.pure_ambient());
+            [summed_parts(shading, a, x, ambient), summed_parts(shading, b, y, ambient), summed_parts(shading, c, z, ambient)]
+        }
     };
-    let mut parts = [diffuse(a.light), diffuse(b.light), diffuse(c.light)];
-    for (light, half) in summed_highlights(setup, shading) {
-        parts.iter_mut().zip(half).for_each(|(parts, half)| reflectance.add_highlight(parts, light, half));
+    let &[x, y, z] = setup.albedos().unwrap_or(&[Albedo::WHITE; 3]);
+    [x.lit(r), y.lit(g), z.lit(b)]
+}
+
+/// The parts of light at the first corner where the diffuse light of several lights is summed, if they are those of all corners.
+#[inline(never)]
+pub(super) fn uniform_parts(setup: &TriangleSetup<'_>, shading: &Shading<'_>) -> Option<Parts> {
+    let ([a, b, c], [x, y, z]) = (setup.corners, setup.vertices());
+    // Number by number: whole arrays are compared by a call.
+    let same_light =
+        |[r, g, b, sides]: [i32; 4], other: [i32; 4]| (r ^ other[0]) | (g ^ other[1]) | (b ^ other[2]) | (sides ^ other[3]) == 0;
+    let same_normal = |[x, y, z]: [i16; 3], other: [i16; 3]| (x ^ other[0]) | (y ^ other[1]) | (z ^ other[2]) == 0;
+    let is_uniform =
+        same_light(a.light, b.light) && same_light(a.light, c.light) && same_normal(x.normal, y.normal) && same_normal(x.normal, z.normal);
+    (is_uniform && shading.reflectance.sums_lights()).then(|| summed_parts(shading, a, x, shading.reflectance.pure_ambient()))
+}
+
+/// The parts of light at a vertex where the diffuse light of several lights is summed, and ambient light is this.
+#[inline(never)]
+fn summed_parts(shading: &Shading<'_>, screen: &ScreenVertex, vertex: &Vertex, [red, green, blue]: [i32; 3]) -> Parts {
+    let (Shading { reflectance, lighting, .. }, [r, g, b, sides]) = (shading, screen.light);
+    let level = |ambient: i32, sum: i32| reflectance.summed_level(ambient.wrapping_add(sum));
+    let mut parts = Parts { diffuse: [level(red, r), level(green, g), level(blue, b)], specular: [0; 3] };
+    let sides = Sides::of_triangle([sides; 3]);
+    for (light, source) in lighting.sources().iter().enumerate() {
+        if let Some([_, half]) = source.directional()
+            && sides.may_have_highlight(light)
+        {
+            reflectance.add_highlight(&mut parts, light, vertex_cosine(wide(vertex.normal), *half));
+        }
     }
-    let albedos = setup.albedos().copied().unwrap_or([Albedo::WHITE; 3]);
-    zip(albedos, parts, Albedo::lit)
+    parts
 }

@@ -222,9 +222,8 @@ impl Interval {
         Self { below: most, above: most }
     }
 
-    /// The interval of the sum of two errors.
     #[inline]
-    pub(crate) fn plus(self, other: Self) -> Self {
+    fn plus(self, other: Self) -> Self {
         Self { below: self.below + other.below, above: self.above + other.above }
     }
 }
@@ -323,26 +322,21 @@ impl ErrorBounds {
 
     #[inline]
     fn add_highlight(&self, light: usize, curvature: Curvature, cosines: &[CornerCosines], bounds: &mut LinearBound) {
-        if let (Some(light), Some([_, half])) = (self.lights.get(light), cosines.get(light))
-            && let Some(place) = self.highlight(curvature, half)
-        {
-            bounds.interval = bounds.interval.plus(self.linear_at(&place, light.specular));
-            bounds.brightest += place.brightest(light.specular);
-            bounds.has_highlight = true;
+        if let (Some(light), Some([_, half])) = (self.lights.get(light), cosines.get(light)) {
+            self.add_linear_highlight(curvature, half, light.specular, bounds);
         }
     }
 
-    /// Linear interpolation of a highlight of this level, Q9.7.
-    #[inline]
-    fn linear_at(&self, place: &TablePlace, specular: u32) -> Interval {
-        let ([below, above], corners) = (place.linear(specular), place.rounding(self.exponent, specular));
-        Interval { below: below + corners, above: above + corners }
-    }
-
-    /// Linear interpolation of a highlight of this level, Q9.7, with these N·H at the corners; `None` where it cannot be seen.
-    #[inline]
-    pub(crate) fn linear_highlight(&self, curvature: Curvature, half: &[i32; 3], specular: u32) -> Option<Interval> {
-        self.highlight(curvature, half).map(|place| self.linear_at(&place, specular))
+    /// Adds a highlight of this level, Q9.7, with these N·H at the corners, where it can be seen.
+    #[inline(always)]
+    pub(crate) fn add_linear_highlight(&self, curvature: Curvature, half: &[i32; 3], specular: u32, bounds: &mut LinearBound) {
+        if let Some(place) = self.highlight(curvature, half) {
+            let [below, above] = place.linear(specular);
+            let corners = place.rounding(self.exponent, specular);
+            bounds.interval = bounds.interval.plus(Interval { below: below + corners, above: above + corners });
+            bounds.brightest += place.brightest(specular);
+            bounds.has_highlight = true;
+        }
     }
 
     /// A bound of what the quadratic through six nodes is farther off where the colour of the surface differs by `range`, Q0.16, between corners: a

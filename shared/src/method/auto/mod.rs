@@ -39,7 +39,7 @@ use crate::{
     raster::{band::Band, canvas::Canvas, pixel_shader::Solid},
 };
 pub use choice::{Choice, choose};
-use choice::{corner_levels, extremes};
+use choice::{corner_levels, extremes, uniform_parts};
 use core::hint::black_box;
 
 static FACTS: Facts = Facts {
@@ -86,12 +86,14 @@ fn half_way_parts(setup: &TriangleSetup<'_>, reflectance: &Reflectance) -> Parts
 #[inline(never)]
 fn middle(setup: &TriangleSetup<'_>, shading: &Shading<'_>, raises: [i32; 3]) -> [i32; 3] {
     let reflectance = shading.reflectance;
+    if let Some(parts) = uniform_parts(setup, shading) {
+        let albedo = setup.albedos().map_or(Albedo::WHITE, Albedo::half_way);
+        return zip(albedo.lit(parts), raises, |level, raise| (level + raise).clamp(0, FULL));
+    }
     if reflectance.sums_lights() {
-        let [red, green, blue] = channels(corner_levels(setup, shading)).map(|levels| {
-            let [least, most] = extremes(levels);
-            (least + most) >> 1
-        });
-        return zip([red, green, blue], raises, |level, raise| (level + raise).clamp(0, FULL));
+        let [red, green, blue] = channels(corner_levels(setup, shading)).map(extremes);
+        let middle = |[least, most]: [i32; 2], raise: i32| (((least + most) >> 1) + raise).clamp(0, FULL);
+        return [middle(red, raises[0]), middle(green, raises[1]), middle(blue, raises[2])];
     }
     if let Some(albedos) = setup.albedos() {
         return zip(Albedo::half_way(albedos).lit(half_way_parts(setup, &reflectance)), raises, |level, raise| {
