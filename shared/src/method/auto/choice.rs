@@ -291,9 +291,17 @@ fn linear_raise(setup: &TriangleSetup<'_>, interval: Interval, budget: u32, rang
 #[inline(never)]
 pub(super) fn corner_levels(setup: &TriangleSetup<'_>, shading: &Shading<'_>) -> [[i32; 3]; 3] {
     let ([a, b, c], reflectance) = (setup.corners, shading.reflectance);
-    if !reflectance.sums_lights() {
-        return [reflectance.two_lights(a.light), reflectance.two_lights(b.light), reflectance.two_lights(c.light)];
+    if reflectance.sums_lights() {
+        return summed_levels(setup, shading);
     }
+    [reflectance.two_lights(a.light), reflectance.two_lights(b.light), reflectance.two_lights(c.light)]
+}
+
+/// [`corner_levels`] where the diffuse light of several lights is summed.
+// A call, so that two lights do not pay for its memory.
+#[inline(never)]
+fn summed_levels(setup: &TriangleSetup<'_>, shading: &Shading<'_>) -> [[i32; 3]; 3] {
+    let ([a, b, c], reflectance) = (setup.corners, shading.reflectance);
     let [r, g, b] = match uniform_parts(setup, shading) {
         Some(parts) => [parts; 3],
         None => {
@@ -305,7 +313,8 @@ pub(super) fn corner_levels(setup: &TriangleSetup<'_>, shading: &Shading<'_>) ->
     [x.lit(r), y.lit(g), z.lit(b)]
 }
 
-/// The parts of light at the first corner where the diffuse light of several lights is summed, if they are those of all corners.
+/// The parts of light at the first corner where the diffuse light of several lights is summed, if they are those of all corners. Domain:
+/// [`Reflectance::sums_lights`](crate::lighting::reflectance::Reflectance::sums_lights).
 #[inline(never)]
 pub(super) fn uniform_parts(setup: &TriangleSetup<'_>, shading: &Shading<'_>) -> Option<Parts> {
     let ([a, b, c], [x, y, z]) = (setup.corners, setup.vertices());
@@ -315,7 +324,7 @@ pub(super) fn uniform_parts(setup: &TriangleSetup<'_>, shading: &Shading<'_>) ->
     let same_normal = |[x, y, z]: [i16; 3], other: [i16; 3]| (x ^ other[0]) | (y ^ other[1]) | (z ^ other[2]) == 0;
     let is_uniform =
         same_light(a.light, b.light) && same_light(a.light, c.light) && same_normal(x.normal, y.normal) && same_normal(x.normal, z.normal);
-    (is_uniform && shading.reflectance.sums_lights()).then(|| summed_parts(shading, a, x, shading.reflectance.pure_ambient()))
+    is_uniform.then(|| summed_parts(shading, a, x, shading.reflectance.pure_ambient()))
 }
 
 /// The parts of light at a vertex where the diffuse light of several lights is summed, and ambient light is this.

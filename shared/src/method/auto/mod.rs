@@ -82,18 +82,24 @@ fn half_way_parts(setup: &TriangleSetup<'_>, reflectance: &Reflectance) -> Parts
     reflectance.reflected_parts(half_way(setup, 0, 0), half_way(setup, 2, 0) as u32)
 }
 
-/// The means of the smallest and the largest level at the corners, raised.
+/// [`middle`] where the diffuse light of several lights is summed.
 #[inline(never)]
-fn middle(setup: &TriangleSetup<'_>, shading: &Shading<'_>, raises: [i32; 3]) -> [i32; 3] {
-    let reflectance = shading.reflectance;
+fn summed_middle(setup: &TriangleSetup<'_>, shading: &Shading<'_>, raises: [i32; 3]) -> [i32; 3] {
     if let Some(parts) = uniform_parts(setup, shading) {
         let albedo = setup.albedos().map_or(Albedo::WHITE, Albedo::half_way);
         return zip(albedo.lit(parts), raises, |level, raise| (level + raise).clamp(0, FULL));
     }
+    let [red, green, blue] = channels(corner_levels(setup, shading)).map(extremes);
+    let middle = |[least, most]: [i32; 2], raise: i32| (((least + most) >> 1) + raise).clamp(0, FULL);
+    zip([red, green, blue], raises, middle)
+}
+
+/// The means of the smallest and the largest level at the corners, raised.
+#[inline(never)]
+fn middle(setup: &TriangleSetup<'_>, shading: &Shading<'_>, raises: [i32; 3]) -> [i32; 3] {
+    let reflectance = shading.reflectance;
     if reflectance.sums_lights() {
-        let [red, green, blue] = channels(corner_levels(setup, shading)).map(extremes);
-        let middle = |[least, most]: [i32; 2], raise: i32| (((least + most) >> 1) + raise).clamp(0, FULL);
-        return [middle(red, raises[0]), middle(green, raises[1]), middle(blue, raises[2])];
+        return summed_middle(setup, shading, raises);
     }
     if let Some(albedos) = setup.albedos() {
         return zip(Albedo::half_way(albedos).lit(half_way_parts(setup, &reflectance)), raises, |level, raise| {
