@@ -101,10 +101,10 @@ impl<'a, C: Pixel> MaterialTables<'a, C> {
         NeutralRgb::new(even, self.reflectance.quarter())
     }
 
-    /// The level and the colour of a surface of one colour, `raise` (Q9.7) higher, if the light has no hue.
+    /// The level and the colour of a surface of one colour, `raise` (Q9.7) higher, if the light has no hue and fits a word.
     #[inline(never)]
     pub(crate) fn tint_of(&self, albedo: Albedo, raise: i32) -> Option<(TintLevel, Tint<C>)> {
-        self.neutral_rgb()?.tint(albedo.shares(), raise)
+        if self.reflectance.sums_fit() { self.neutral_rgb()?.tint(albedo.shares(), raise) } else { None }
     }
 
     /// The sums of [`Self::one_light_rgb`] on a surface of this colour, for even rows and for odd ones.

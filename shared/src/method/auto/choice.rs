@@ -231,11 +231,16 @@ fn under_summed_lights(setup: &TriangleSetup<'_>, shading: &Shading<'_>) -> Opti
     let Shading { reflectance, lighting, error_bounds, budget, .. } = *shading;
     let curvature = Curvature::of(setup.triangle)?;
     let [a, b, c] = setup.corners.map(|corner| corner.light);
-    if setup.has_texture() || !Sides::of_triangle([a[3], b[3], c[3]]).are_whole(lighting.sources().len()) {
+    let sides = Sides::of_triangle([a[3], b[3], c[3]]);
+    if setup.has_texture() || !sides.are_whole(lighting.sources().len()) {
         return None;
     }
     let [red, green, blue] = [extremes([a[0], b[0], c[0]]), extremes([a[1], b[1], c[1]]), extremes([a[2], b[2], c[2]])];
     let sums = [red[0].min(green[0]).min(blue[0]), red[1].max(green[1]).max(blue[1])].map(|sum| reflectance.summed_level(sum));
+    // Bounds of brighter light would not fit a word.
+    if sums[1].max(sums[0].wrapping_neg()) > 4 * FULL {
+        return None;
+    }
     let mut interval = Interval::of_sum(curvature, sums);
     let diffuse = reflectance.summed_level((red[1] - red[0]).max(green[1] - green[0]).max(blue[1] - blue[0])) as u32 + 1;
     if let Some(albedos) = setup.albedos() {
@@ -244,7 +249,6 @@ fn under_summed_lights(setup: &TriangleSetup<'_>, shading: &Shading<'_>) -> Opti
     if interval.half() > budget {
         return None;
     }
-    let sides = Sides::of_triangle([a[3], b[3], c[3]]);
     let is_long = setup.triangle.min_normal_length >= LEAST_LENGTH << (NORMAL_LENGTH - 4);
     let (mut bounds, mut varies) = (LinearBound { interval, brightest: sums[1].max(0) as u32, has_highlight: false }, false);
     for (light, source) in lighting.sources().iter().enumerate() {

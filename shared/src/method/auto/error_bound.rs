@@ -207,8 +207,8 @@ impl Interval {
         Self { below: self.below + by, above: self.above + by }
     }
 
-    /// Linear interpolation of diffuse light that is `s` before it is divided by |N|, where s is linear and at the corners between these levels, Q9.7:
-    /// the error is s (1/|N| - 1).
+    /// Linear interpolation of diffuse light that is `s` before it is divided by |N|, where s is linear and at the corners between these levels, Q9.7, at
+    /// most four times 255: the error is s (1/|N| - 1).
     #[inline]
     pub(crate) fn of_sum(curvature: Curvature, [least, most]: [i32; 2]) -> Self {
         let off = |level: i32| ((level.max(0) as u32 * curvature.longer) >> BOUND) + 1;
