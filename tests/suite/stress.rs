@@ -92,15 +92,13 @@ const BROKEN: [(&str, &str, [u32; 2], u32, bool); 13] = [
 ];
 
 /// Random cases that once broke a promise: family, seed and number.
-const CASES: [(&str, u64, u64); 4] = [
+const CASES: [(&str, u64, u64); 3] = [
     // A spotlight is 100 times closer to a pixel than to the farthest corner, and the distance is walked with the bits of that.
     ("arithmetic", 992_300_001, 19_081),
     // A guard of the table of colours, far beyond white, overflowed.
     ("changes", 992_400_004, 9_540),
     // Highlights that cannot be seen were too steep for loops unless they were left out.
     ("sameness", 992_400_003, 2_496),
-    // A corner of a part lies where opposite normals cancel each other, and rounding decides where its normal points.
-    ("arithmetic", 777_031, 3_079),
 ];
 
 #[test]

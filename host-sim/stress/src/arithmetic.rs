@@ -112,8 +112,7 @@ enum Divides {
     Nowhere,
     /// The method divides at each pixel.
     AtPixels,
-    /// The method divides at nodes or ends of rows, and interpolates cosines, lengths or angles between them; or it interpolates light between nodes that
-    /// may lie anywhere in a triangle, and normalises there.
+    /// The method divides at nodes or ends of rows, and interpolates cosines, lengths or angles between them.
     AtNodes,
 }
 
@@ -127,8 +126,6 @@ impl Divides {
             "renq-newton" if !is_constant => Self::AtPixels,
             "auto" | "auto-linear" | "duff" | "highlight-test" | "phong" | "phong-rv" => Self::AtPixels,
             "angular" | "angular-original" | "goldman" | "hybrid" | "hybrid-original" | "renq" | "renq-newton" | "slerp" => Self::AtNodes,
-            // They split triangles, and take the normals of the parts' corners.
-            "six-point-adaptive" | "six-point-centre" => Self::AtNodes,
             _ => Self::Nowhere,
         }
     }
