@@ -257,9 +257,12 @@ fn under_summed_lights(setup: &TriangleSetup<'_>, shading: &Shading<'_>) -> Opti
             && (!is_long || sides.may_have_highlight(light))
         {
             let half = setup.corner_cosines(*half);
-            error_bounds.add_linear_highlight(curvature, &half, reflectance.specular_level(light), &mut bounds);
             let [at_a, at_b, at_c] = half;
-            varies |= at_a != at_b || at_a != at_c;
+            // Asked here, too, so that the choice is the same if nothing is left out.
+            if largest(&half) >= setup.highlight_threshold(&reflectance) {
+                error_bounds.add_linear_highlight(curvature, &half, reflectance.specular_level(light), &mut bounds);
+                varies |= at_a != at_b || at_a != at_c;
+            }
         }
     }
     let LinearBound { interval, brightest, has_highlight } = bounds;
