@@ -397,12 +397,6 @@ impl Reflectance {
         sum >> (FACTOR - self.excess())
     }
 
-    /// The level of a whole highlight of a light, Q9.7, in the channel where it is largest. Domain: [`Self::sums_lights`].
-    #[inline]
-    pub(crate) fn specular_level(&self, light: usize) -> u32 {
-        self.gains.get(light).map_or(0, |&Gains { specular: [r, g, b], .. }| r.max(g).max(b).into())
-    }
-
     /// Turns two savings on or off: leaving out highlights where none can be seen, and lights that do not reach a triangle.
     #[cfg(feature = "skips")]
     pub(crate) fn leave_out(&mut self, highlights: bool, lights: bool) {
@@ -668,10 +662,12 @@ impl<'f> LitMaterial<'f> {
     }
 
     /// The diffuse level at cosine 1 and the level of a whole highlight of a light, Q9.7, each in the channel where it is largest.
+    #[inline]
     #[must_use]
     pub fn largest_gains(self, light: usize) -> [u32; 2] {
         let Gains { diffuse, specular } = self.gains.get(light).copied().unwrap_or(Gains::NONE);
-        let most = |gains: [u16; 3]| largest(gains.map(u32::from));
+        // Written out: `map` of arrays goes through memory at opt-level "s".
+        let most = |[r, g, b]: [u16; 3]| u32::from(r.max(g).max(b));
         [most(diffuse), if self.holds_levels() { self.highlight(1 << COSINE) } else { most(specular) }]
     }
 

@@ -8,7 +8,7 @@
 //! it is ambient.
 
 use crate::{
-    format::COSINE,
+    format::{COSINE, NORMAL_LENGTH},
     lighting::{
         constant_lights::FACTOR,
         lights::{Source, vertex_cosine},
@@ -28,12 +28,20 @@ impl Sides {
     const DARK: Self = Self(1 << KIND);
     const HIGHLIGHT: Self = Self(1 << (2 * KIND));
 
-    /// The sides of all corners of a triangle: bright and dark where all are, and a highlight where one may have it.
+    /// The sides of all corners of a triangle, whose interpolated normals are at least `min_normal_length` (Q1.[`NORMAL_LENGTH`]) long: bright and dark
+    /// where all corners are, and a highlight where one may have it, or where normals may be so short that any place between them may.
     #[inline]
-    pub(crate) fn of_triangle([a, b, c]: [i32; 3]) -> Self {
+    pub(crate) fn of_triangle([a, b, c]: [i32; 3], min_normal_length: u16) -> Self {
         let (all, any) = (a & b & c, a | b | c);
         let highlights = Self::HIGHLIGHT.0 * 0xff;
-        Self(all as u32 & (highlights - 1) | any as u32 & highlights)
+        let may_have = if min_normal_length >= LEAST_LENGTH << (NORMAL_LENGTH - 4) { any as u32 } else { highlights };
+        Self(all as u32 & (highlights - 1) | may_have & highlights)
+    }
+
+    /// The sides of a vertex.
+    #[inline]
+    pub(crate) fn of_vertex(sides: i32) -> Self {
+        Self(sides as u32)
     }
 
     /// Whether light number `light` reaches all of the triangle.
@@ -67,8 +75,8 @@ impl Sides {
     }
 }
 
-/// Normals that are interpolated to at least this length, as a part of 16, have a highlight only where [`Sides::may_have_highlight`].
-pub(crate) const LEAST_LENGTH: u16 = 15;
+/// Normals that are interpolated to at least this length, as a part of 16, have a highlight only where a corner may have it.
+const LEAST_LENGTH: u16 = 15;
 
 /// The sums of diffuse light at a vertex in each channel, Q10.22 less the bits of [`Reflectance::excess`], and its [`Sides`].
 pub(crate) fn at_vertex(reflectance: &Reflectance, sources: &[Source], normal: [i32; 3]) -> [i32; 4] {

@@ -3,12 +3,12 @@
 use super::costs::SAVINGS;
 use crate::{
     features::PERSPECTIVE,
-    format::{FULL, NORMAL_LENGTH},
+    format::FULL,
     geometry::projection::ScreenVertex,
     lighting::{
         albedo::{Albedo, Parts, SHARE},
         lights::vertex_cosine,
-        summed::{LEAST_LENGTH, Sides},
+        summed::Sides,
     },
     math::vector::wide,
     method::{
@@ -231,7 +231,7 @@ fn under_summed_lights(setup: &TriangleSetup<'_>, shading: &Shading<'_>) -> Opti
     let Shading { reflectance, lighting, error_bounds, budget, .. } = *shading;
     let curvature = Curvature::of(setup.triangle)?;
     let [a, b, c] = setup.corners.map(|corner| corner.light);
-    let sides = Sides::of_triangle([a[3], b[3], c[3]]);
+    let sides = Sides::of_triangle([a[3], b[3], c[3]], setup.triangle.min_normal_length);
     if setup.has_texture() || !sides.are_whole(lighting.sources().len()) {
         return None;
     }
@@ -249,18 +249,18 @@ fn under_summed_lights(setup: &TriangleSetup<'_>, shading: &Shading<'_>) -> Opti
     if interval.half() > budget {
         return None;
     }
-    let is_long = setup.triangle.min_normal_length >= LEAST_LENGTH << (NORMAL_LENGTH - 4);
     let (mut bounds, mut varies) = (LinearBound { interval, brightest: sums[1].max(0) as u32, has_highlight: false }, false);
     for (light, source) in lighting.sources().iter().enumerate() {
         if let Some([_, half]) = source.directional()
             && !source.is_sky()
-            && (!is_long || sides.may_have_highlight(light))
+            && sides.may_have_highlight(light)
         {
             let half = setup.corner_cosines(*half);
             let [at_a, at_b, at_c] = half;
             // Asked here, too, so that the choice is the same if nothing is left out.
             if largest(&half) >= setup.highlight_threshold(&reflectance) {
-                error_bounds.add_linear_highlight(curvature, &half, reflectance.specular_level(light), &mut bounds);
+                let [_, specular] = reflectance.largest_gains(light);
+                error_bounds.add_linear_highlight(curvature, &half, specular, &mut bounds);
                 varies |= at_a != at_b || at_a != at_c;
             }
         }
@@ -340,7 +340,7 @@ fn summed_parts(shading: &Shading<'_>, screen: &ScreenVertex, vertex: &Vertex, [
     let (Shading { reflectance, lighting, .. }, [r, g, b, sides]) = (shading, screen.light);
     let level = |ambient: i32, sum: i32| reflectance.summed_level(ambient.wrapping_add(sum));
     let mut parts = Parts { diffuse: [level(red, r), level(green, g), level(blue, b)], specular: [0; 3] };
-    let sides = Sides::of_triangle([sides; 3]);
+    let sides = Sides::of_vertex(sides);
     for (light, source) in lighting.sources().iter().enumerate() {
         if let Some([_, half]) = source.directional()
             && sides.may_have_highlight(light)

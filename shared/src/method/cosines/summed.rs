@@ -6,7 +6,7 @@
 use crate::{
     arch::product::upper,
     features::VERTEX_COLOURS,
-    format::{MAX_LIGHTS, NORMAL_LENGTH},
+    format::MAX_LIGHTS,
     interpolate::{
         Patch, Walker,
         by_column::{ByColumn, Column},
@@ -16,7 +16,7 @@ use crate::{
     lighting::{
         constant_lights::{DiffuseOnly, LitColours, SUMMED, Summed, SummedRgb, cosine},
         material_tables::MaterialTables,
-        summed::{LEAST_LENGTH, Sides, part},
+        summed::{Sides, part},
     },
     math::{
         highlight_lookup::QuotientLookup,
@@ -103,8 +103,7 @@ impl SummedLights {
     ) -> Self {
         let (material, full) = (tables.reflectance, tables.summed_rgb().diffuse());
         let [a, b, c] = setup.corners.map(|corner| corner.light);
-        let sides = Sides::of_triangle([a[3], b[3], c[3]]);
-        let is_long = setup.triangle.min_normal_length >= LEAST_LENGTH << (NORMAL_LENGTH - 4);
+        let sides = Sides::of_triangle([a[3], b[3], c[3]], setup.triangle.min_normal_length);
         let corners = [[a[0], b[0], c[0]], [a[1], b[1], c[1]], [a[2], b[2], c[2]]];
         let ambient = if VERTEX_COLOURS && setup.albedos().is_some() { material.pure_ambient() } else { [0; 3] };
         let mut lights = Self { corners, ambient, ..Self::default() };
@@ -120,7 +119,7 @@ impl SummedLights {
                 }
                 Term::add(&mut lights.ending, plane(setup, full, lengths, &towards), gains);
             }
-            let mut has_highlight = !source.is_sky() && (!is_long || sides.may_have_highlight(light));
+            let mut has_highlight = !source.is_sky() && sides.may_have_highlight(light);
             if has_highlight {
                 let half = setup.corner_cosines(half);
                 has_highlight = !setup.leaves_out_highlight(material, &half);
