@@ -92,7 +92,11 @@ const BROKEN: [(&str, &str, [u32; 2], u32, bool); 13] = [
 ];
 
 /// Random cases that once broke a promise: family, seed and number.
-const CASES: [(&str, u64, u64); 3] = [
+const CASES: [(&str, u64, u64); 5] = [
+    // Under skies alone a glossy material has one hue. The oracle judged it in three channels.
+    ("arithmetic", 777_031, 3_079),
+    // Highlights at the corners of a texture were brighter than white under two lights, and were limited to it.
+    ("arithmetic", 202_611_284_110, 41_096),
     // A spotlight is 100 times closer to a pixel than to the farthest corner, and the distance is walked with the bits of that.
     ("arithmetic", 992_300_001, 19_081),
     // A guard of the table of colours, far beyond white, overflowed.

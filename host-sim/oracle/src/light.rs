@@ -67,7 +67,9 @@ impl Frame {
         }
         let material = self.material(facet);
         let product = |a: V3, b: V3| [0, 1, 2].map(|k| a[k] * b[k]);
-        let lit = self.lights.iter().flat_map(|light| [material.diffuse, material.specular].map(|gain| product(light.colour, gain)));
+        // A sky has no highlight.
+        let gains = |light: &Light| [material.diffuse, if light.is_sky { [0.0; 3] } else { material.specular }];
+        let lit = self.lights.iter().flat_map(|light| gains(light).map(|gain| product(light.colour, gain)));
         let colours: Vec<V3> = lit.chain([material.ambient]).collect();
         let brightest = |colour: &V3| (0..3).max_by(|&i, &j| colour[i].total_cmp(&colour[j])).unwrap_or(0);
         let largest = |colour: &V3| colour[brightest(colour)];
@@ -279,5 +281,17 @@ mod tests {
         let frame = frame(Material { ambient: [0.1; 3], diffuse: [0.5; 3], specular: [0.2; 3], exponent: 8.0 }, FAR);
         let grey = Frame { lights: frame.lights.iter().map(|&light| Light { colour: [1.0; 3], ..light }).collect(), ..frame };
         assert_eq!([None, Some(WHITE)].map(|albedos| grey.only_channel(&facet(albedos)).is_some()), [true, false]);
+    }
+
+    /// Under skies alone a material of one hue has one channel, whatever its highlights look like.
+    #[test]
+    fn highlights_count_only_where_lights_have_them() {
+        let glossy = Material { ambient: [0.1, 0.05, 0.05], diffuse: [0.8, 0.4, 0.4], specular: [0.4; 3], exponent: 8.0 };
+        let frame = frame(glossy, FAR);
+        let lit_by = |is_sky| {
+            let lights = frame.lights.iter().map(|&light| Light { colour: [1.0; 3], is_sky, ..light }).collect();
+            Frame { lights, ..frame.clone() }.only_channel(&facet(None))
+        };
+        assert_eq!([false, true].map(lit_by), [None, Some(0)]);
     }
 }

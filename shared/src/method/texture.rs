@@ -218,12 +218,12 @@ pub(crate) fn fill<C: Pixel>(
     let way = setup.way_of_places(texture);
     let parts = parts();
     let light = parts.map(|parts| map(part(parts.diffuse, QUARTER), scaled));
-    let highlights = parts.map(|parts| map(parts.specular, |level| level.min(FULL)));
+    let highlights = parts.map(|parts| parts.specular);
     let range = || largest_range(light).saturating_mul(1 << QUARTER).max(largest_range(highlights));
     let is_matt = highlights == [[0; 3]; 3];
     // The sum at a pixel is less than 512.
     let most = if is_matt { 510 } else { 257 } << LEVEL >> QUARTER;
-    let is_bright = light.as_flattened().iter().any(|&quarter| quarter >= most);
+    let is_bright = light.as_flattened().iter().any(|&quarter| quarter >= most) || highlights.as_flattened().iter().any(|&level| level > FULL);
     if C::GRAY || is_bright || !matches!(setup.linear_way(range), LinearWay::Plane) {
         return None;
     }
