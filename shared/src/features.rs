@@ -24,13 +24,15 @@ pub enum Feature {
     Text,
     /// Textures.
     Textures,
+    /// Surfaces that let through a part of what is behind them, and holes in textures.
+    Transparency,
     /// Meshes with colours at the corners of their triangles.
     VertexColours,
 }
 
 impl Feature {
     /// All features that a mesh file can need.
-    pub const ALL: [Self; 10] = [
+    pub const ALL: [Self; 11] = [
         Self::Animation,
         Self::Antialias,
         Self::Colours,
@@ -40,6 +42,7 @@ impl Feature {
         Self::Objects,
         Self::Text,
         Self::Textures,
+        Self::Transparency,
         Self::VertexColours,
     ];
 
@@ -56,6 +59,7 @@ impl Feature {
             Self::Objects => "objects",
             Self::Text => "text",
             Self::Textures => "textures",
+            Self::Transparency => "transparency",
             Self::VertexColours => "vertex-colours",
         }
     }
@@ -74,6 +78,7 @@ impl Feature {
             Self::Objects => cfg!(feature = "objects"),
             Self::Text => cfg!(feature = "text"),
             Self::Textures => cfg!(feature = "textures"),
+            Self::Transparency => cfg!(feature = "transparency"),
             Self::VertexColours => cfg!(feature = "vertex-colours"),
         }
     }
@@ -95,6 +100,10 @@ pub(crate) const COLOURED: usize = VERTEX_COLOURS as usize;
 pub(crate) const TEXTURES: bool = Feature::Textures.is_on();
 /// 1 in a program whose meshes may have textures, otherwise 0, as [`COLOURED`].
 pub(crate) const TEXTURED: usize = TEXTURES as usize;
+/// Whether surfaces may be transparent, and textures may have holes.
+pub(crate) const TRANSPARENCY: bool = Feature::Transparency.is_on();
+/// 1 in a program whose surfaces may be transparent, otherwise 0, as [`COLOURED`].
+pub(crate) const TRANSPARENT: usize = TRANSPARENCY as usize;
 
 /// Whether a frame can draw only what has changed.
 pub(crate) const REDRAW: bool = cfg!(feature = "redraw");

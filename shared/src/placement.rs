@@ -1,7 +1,7 @@
 //! The place of an object in one frame, computed once before its triangles are drawn.
 
 use crate::{
-    features::OBJECTS,
+    features::{OBJECTS, TRANSPARENCY},
     format::GeometricError,
     geometry::{
         cull::Facing, detail::tolerance, lens::Lens, model_view::ModelView, pixel_rect::PixelRect, projection::View, region::Region,
@@ -13,6 +13,11 @@ use crate::{
 use core::cell::Cell;
 use zerocopy::{FromBytes, Immutable, IntoBytes, KnownLayout};
 
+/// One past the largest number of a triangle in a frame.
+const NUMBERS: u32 = 1 << 31;
+/// Numbers of transparent triangles are not smaller, numbers of all others are.
+const FIRST_TRANSPARENT: u32 = NUMBERS / 2;
+
 /// An object in one frame. It lies in the renderer's memory.
 #[derive(FromBytes, IntoBytes, Immutable, KnownLayout, Clone, Debug)]
 #[repr(C)]
@@ -20,7 +25,7 @@ pub(crate) struct Placement {
     pub(crate) view: View,
     pub(crate) facing: Facing,
     pub(crate) lighting: Lighting,
-    /// Number of triangles of objects before this one, coarser levels included: triangles of a frame are numbered throughout.
+    /// Number of triangles of objects before this one, coarser levels included. See [`Self::first_number`].
     pub(crate) first_triangle: u32,
     /// Number of vertices of objects before this one.
     pub(crate) first_vertex: u32,
@@ -75,6 +80,13 @@ impl Placement {
         } else {
             scene.stream.levels_within(object.meshes(), tolerance).fold(0, |sum, mesh| sum + mesh.triangles)
         };
+    }
+
+    /// The number in the frame of the first triangle of `object`, coarser levels included. Triangles are drawn in the order of their numbers. Objects are
+    /// numbered from the nearest to the farthest. Transparent triangles have other numbers: they come after all others, the farthest object first.
+    #[inline]
+    pub(crate) fn first_number(&self, object: &Object, is_transparent: bool) -> u32 {
+        if is_transparent { NUMBERS - self.first_triangle - object.span } else { self.first_triangle }
     }
 
     /// Draws the object in the frame if the pixels that it changes, in the rectangle `touched`, reach into `region`. Returns whether the number of
@@ -146,14 +158,19 @@ impl<'r> Placements<'r> {
         self.order.iter().filter_map(move |&index| self.object(scene, index))
     }
 
-    /// The object that has triangle `id` of the frame.
-    pub(crate) fn with_triangle(self, scene: &'r Scene<'_>, id: u32) -> Option<(&'r Placement, &'r Object)> {
-        if !OBJECTS {
-            return self.object(scene, 0);
-        }
-        // They follow one another without a gap: it is the last one that does not start behind the triangle.
-        let starts = |&index: &u32| self.placements.get(index as usize).is_some_and(|placement| placement.first_triangle <= id);
-        self.object(scene, *self.order.get(self.order.partition_point(starts).wrapping_sub(1))?)
+    /// The object that has the triangle of the frame with this number, and the first such number of the object.
+    pub(crate) fn with_triangle(self, scene: &'r Scene<'_>, number: u32) -> Option<(&'r Placement, &'r Object, u32)> {
+        let is_transparent = TRANSPARENCY && number >= FIRST_TRANSPARENT;
+        let index = if OBJECTS {
+            // Objects follow one another without a gap: it is the last one that does not start behind the triangle.
+            let place = if is_transparent { !number & (NUMBERS - 1) } else { number };
+            let starts = |&index: &u32| self.placements.get(index as usize).is_some_and(|placement| placement.first_triangle <= place);
+            *self.order.get(self.order.partition_point(starts).wrapping_sub(1))?
+        } else {
+            0
+        };
+        let (placement, object) = self.object(scene, index)?;
+        Some((placement, object, placement.first_number(object, is_transparent)))
     }
 
     /// The object with this index in the scene.

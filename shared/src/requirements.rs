@@ -6,7 +6,7 @@ use crate::{
     scene::LightTerms,
     stream::{
         Stream,
-        record::{Light, NO_OUTLINES},
+        record::{Light, Mesh, NO_OUTLINES},
     },
 };
 
@@ -30,6 +30,7 @@ impl Feature {
             Self::Objects => stream.instances.len() > 1,
             Self::Text => !stream.labels.is_empty(),
             Self::Textures => header.textures > 0,
+            Self::Transparency => stream.meshes.iter().any(Mesh::is_transparent) || stream.has_holes(),
             Self::VertexColours => !stream.corner_colours.is_empty(),
         }
     }
@@ -40,9 +41,15 @@ impl Feature {
     pub fn missing(stream: &Stream<'_>, channels: &Channels, has: impl Fn(Self) -> bool) -> Option<Self> {
         // Each feature is asked for by name, so that the compiler drops the check if the program has it.
         let lacks = |feature: Self| (!has(feature) && feature.is_needed_by(stream, channels)).then_some(feature);
-        let [animation, antialias, colours, lights, light_shapes, near_lights, objects, text, textures, vertex_colours] = Self::ALL;
+        let [animation, antialias, colours, lights, light_shapes, near_lights, objects, text, textures, transparency, vertex_colours] =
+            Self::ALL;
         let scene = lacks(animation).or_else(|| lacks(objects)).or_else(|| lacks(text)).or_else(|| lacks(antialias));
         let lights = || lacks(lights).or_else(|| lacks(near_lights)).or_else(|| lacks(light_shapes));
-        scene.or_else(lights).or_else(|| lacks(vertex_colours)).or_else(|| lacks(textures)).or_else(|| lacks(colours))
+        scene
+            .or_else(lights)
+            .or_else(|| lacks(vertex_colours))
+            .or_else(|| lacks(textures))
+            .or_else(|| lacks(transparency))
+            .or_else(|| lacks(colours))
     }
 }

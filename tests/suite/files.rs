@@ -337,6 +337,16 @@ fn image_of(pixels: &[[u8; 3]], width: usize) -> Vec<u8> {
     bytes
 }
 
+/// A PNG of rows of this width, with the opacity of each pixel.
+fn image_with_opacity(pixels: &[[u8; 4]], width: usize) -> Vec<u8> {
+    let mut bytes = Vec::new();
+    let mut encoder = png::Encoder::new(&mut bytes, width as u32, (pixels.len() / width) as u32);
+    encoder.set_color(png::ColorType::Rgba);
+    encoder.set_depth(png::BitDepth::Eight);
+    encoder.write_header().expect("a header").write_image_data(pixels.as_flattened()).expect("pixels");
+    bytes
+}
+
 /// A cube whose sides are each in the middle of one of `count` patches of a texture.
 fn of_patches(count: usize, library: &str) -> String {
     let places: String = (0..count).map(|patch| format!("vt {} 0.5\n", (patch as f64 + 0.5) / count as f64)).collect();
@@ -416,6 +426,75 @@ fn faces_have_the_colours_of_textures_and_vertices() {
     assert_eq!(seen, [Some(patches[0]), Some([0, 128, 255]), None, Some(patches[0])]);
     // Equal palettes are one.
     assert!(stream.colours.len() == 17 && stream.meshes[0].palette == stream.meshes[3].palette && stream.materials.len() == 4);
+}
+
+/// Transparent materials and holes of textures are told, drawn with the feature `transparency`, and left out by `--opaque`.
+#[test]
+fn what_is_seen_through_surfaces_is_told() {
+    let place = Place::new();
+    let glass = format!("mtllib a.mtl\n{CORNERS}usemtl glass\n{}\nusemtl air\n{}\n", SIDES[..3].join("\n"), SIDES[3..].join("\n"));
+    place.file("a.mtl", "newmtl glass\nKd 1 1 1\nd 0.375\nnewmtl air\nKd 1 1 1\nTr 1\n").file("a.obj", glass);
+    let transparency = || {
+        let bytes = StreamBytes::read(&place.0.path().join("out.tri")).expect("a stream");
+        bytes.parse().expect("a stream").meshes.iter().map(microphong::stream::record::Mesh::transparency).collect::<Vec<_>>()
+    };
+    let said = place.converts(&["a.obj"]);
+    assert_eq!(transparency(), [10, 15]);
+    for words in [
+        "the file makes these materials invisible, and they are drawn with an opacity of 1/16: air; --opaque draws them whole",
+        "mesh 0: material 0 \"glass\", 6 triangles, lets through 10/16 of what is behind it",
+        "features = [\"transparency\"]",
+    ] {
+        assert!(said.contains(words), "{words}: {said}");
+    }
+    assert_eq!(place.counts("a.obj")["list"][1]["transparency"], 15);
+    let said = String::from_utf8(place.run(&["compare", "a.obj"]).stderr).expect("text");
+    assert!(
+        said.contains("the scene has transparent surfaces or holes, and the reference draws neither: convert it by --opaque"),
+        "{said}"
+    );
+    let said = place.converts(&["a.obj", "--opaque"]);
+    assert!(transparency() == [0, 0] && !said.contains("transparency") && !said.contains("invisible"), "{said}");
+
+    let pixels: Vec<_> = (0..64).map(|k| [200, 100, 0, if k % 8 < 4 { 0 } else { 255 }]).collect();
+    let leaf = "mtllib b.mtl\nv 0 0 0\nv 1 0 0\nv 1 1 0\nv 0 1 0\nvt 0 0\nvt 1 0\nvt 1 1\nvt 0 1\nusemtl leaf\nf 1/1 2/2 3/3 4/4\n";
+    place.file("b.obj", leaf).file("b.png", image_with_opacity(&pixels, 8));
+    place.file("b.mtl", "newmtl leaf\nKd 1 1 1\nmap_Kd b.png\n");
+    let said = place.converts(&["b.obj"]);
+    assert!(said.contains("left out: opacity of textures of colour that no map_d names") && !said.contains("holes"), "{said}");
+    place.file("b.mtl", "newmtl leaf\nKd 1 1 1\nmap_Kd b.png\nmap_d b.png\n");
+    let said = place.converts(&["b.obj"]);
+    let filled = "1 material has a texture with holes: they are filled in; --colours texture keeps them, for a program with the features textures \
+                  and transparency";
+    assert!(said.contains(filled) && !said.contains("left out"), "{said}");
+    let said = place.converts(&["b.obj", "--colours", "texture"]);
+    for words in [
+        "1 material has a texture with holes: a program needs the feature transparency to draw them",
+        "2 triangles with a texture of 8x8 that has holes",
+        "features = [\"textures\", \"transparency\"]",
+    ] {
+        assert!(said.contains(words), "{words}: {said}");
+    }
+    let bytes = StreamBytes::read(&place.0.path().join("out.tri")).expect("a stream");
+    let stream = bytes.parse().expect("a stream");
+    let texture = stream.texture_of(&stream.meshes[0]).expect("a texture");
+    let holes: Vec<bool> = texture.texels.iter().map(|&texel| texture.palette[usize::from(texel)].hole == 1).collect();
+    assert_eq!(holes, (0..64).map(|k| k % 8 < 4).collect::<Vec<_>>());
+    let said = place.converts(&["b.obj", "--colours", "texture", "--opaque"]);
+    assert!(!said.contains("holes") && !said.contains("transparency"), "{said}");
+    // A mask has its own size, and its brightness counts where it has no opacity. Without a texture of colour, the rest is white.
+    let mask: Vec<_> = (0..16 * 16).map(|k| if k / 16 < 4 { [0; 3] } else { [255; 3] }).collect();
+    place.file("mask.png", image_of(&mask, 16)).file("b.mtl", "newmtl leaf\nKd 0.5 1 0\nmap_d mask.png\n");
+    place.converts(&["b.obj", "--colours", "texture"]);
+    let bytes = StreamBytes::read(&place.0.path().join("out.tri")).expect("a stream");
+    let stream = bytes.parse().expect("a stream");
+    let texture = stream.texture_of(&stream.meshes[0]).expect("a texture");
+    let seen: Vec<_> = texture.texels.iter().map(|&texel| texture.palette[usize::from(texel)]).collect();
+    let holes = seen.iter().filter(|colour| colour.hole == 1).count();
+    assert!(
+        texture.size == [4, 4] && holes == 64 && seen.iter().filter(|colour| colour.hole == 0).all(|colour| colour.channels == [255; 3])
+    );
+    assert_eq!(place.colours(), [[0.5, 1.0, 0.0]]);
 }
 
 /// A texture that colours at corners do not give is recommended, and becomes one of the stream with `--colours texture`.

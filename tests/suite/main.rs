@@ -48,6 +48,7 @@ mod split;
 mod still;
 mod stress;
 mod textures;
+mod transparency;
 mod verify;
 mod vertex_colours;
 mod watertight;

@@ -177,7 +177,7 @@ fn inspect_lists_meshes() {
     let said = inspect(&[]);
     assert!(said.contains("2 names            12 bytes") && said.contains("  mesh 1: \"needle\", material 0, 4 triangles\n"), "{said}");
     let line: serde_json::Value = serde_json::from_str(&inspect(&["--json"])).expect("JSON");
-    let row = serde_json::json!({"index": 1, "end": 2, "name": "needle", "material": 0, "triangles": 4, "colours": 0, "of_one_colour": 0, "texture": null});
+    let row = serde_json::json!({"index": 1, "end": 2, "name": "needle", "material": 0, "triangles": 4, "colours": 0, "of_one_colour": 0, "texture": null, "has_holes": false, "transparency": 0});
     assert_eq!(line["list"][1], row);
 }
 

@@ -102,6 +102,7 @@ fn parts_of_random_triangles_cover_each_pixel_once() {
                     rows: rows as i32,
                     active: ActiveTriangles::default(),
                     counts: Counts::default(),
+                    sheet: Default::default(),
                 };
                 drawn[k] += if k == 0 {
                     let screen = ScreenTriangle::new(corners, [0, WIDTH as i32], [top, top + rows].map(|row| row as i32));

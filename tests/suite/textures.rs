@@ -17,10 +17,10 @@ use microphong_sim::{
 
 /// The scene `records`, all of whose meshes have a texture of these colours. `place` tells where each vertex lies in it.
 fn textured(mut records: Records, [width, height]: [u8; 2], colours: &[[u8; 3]], place: impl Fn(u16) -> [u16; 2]) -> StreamBytes {
-    records.colours = colours.iter().map(|&channels| Colour { channels, unused: 0 }).collect();
+    records.colours = colours.iter().map(|&channels| Colour::new(channels)).collect();
     records.texels = (0..1usize << (width + height)).map(|texel| (texel % colours.len()) as u8).collect();
     records.texels.resize(records.texels.len().next_multiple_of(4), 0);
-    records.textures = vec![Texture { size: [width, height], palette: 0, unused: 0 }];
+    records.textures = vec![Texture { size: [width, height], palette: 0, has_holes: 0 }];
     records.texture_corners = records.triangles.iter().map(|triangle| TextureCorners(triangle.corners.map(&place))).collect();
     records.meshes.iter_mut().for_each(|mesh| *mesh = Mesh { flags: mesh.flags | HAS_TEXTURE, palette: 0, ..*mesh });
     records.written().unwrap()
@@ -84,7 +84,7 @@ fn wrong_textures_are_refused() {
     assert_eq!(found(&|records| records.textures[0].size = [9, 0]), "mesh texture");
     assert_eq!(found(&|records| records.textures[0].size = [3, 2]), "mesh texture");
     let with_another = |records: &mut Records, size| {
-        records.textures.insert(0, Texture { size, palette: 0, unused: 0 });
+        records.textures.insert(0, Texture { size, palette: 0, has_holes: 0 });
         records.meshes[0].palette = 1;
     };
     assert_eq!([[9, 0], [0, 0]].map(|size| found(&|records| with_another(records, size))), ["mesh texture"; 2]);

@@ -18,7 +18,7 @@ use microphong_sim::{
 /// The scene of this name, whose corners have colours: `index` tells the number of each in the palette by its vertex.
 pub(crate) fn coloured(parts: Records, palette: &[[u8; 3]], index: impl Fn(usize, u16) -> u8) -> StreamBytes {
     let mut parts = parts;
-    parts.colours = palette.iter().map(|&channels| Colour { channels, unused: 0 }).collect();
+    parts.colours = palette.iter().map(|&channels| Colour::new(channels)).collect();
     let corner = |triangle: usize, corners: [u16; 3]| {
         let colours = corners.map(|corner| index(triangle, corner));
         CornerColours::new(colours, colours.map(|colour| parts.colours[usize::from(colour)]))

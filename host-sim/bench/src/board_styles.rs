@@ -28,8 +28,12 @@ impl Program {
     pub const VERTEX_COLOURS: Self = Self::Styles("rgb565,vertex-colours");
     /// The program that draws textures.
     pub const TEXTURES: Self = Self::Styles("rgb565,textures");
+    /// The program that draws transparent surfaces.
+    pub const TRANSPARENCY: Self = Self::Styles("rgb565,transparency");
+    /// The program that draws textures with holes.
+    pub const HOLES: Self = Self::Styles("rgb565,textures,transparency");
 
-    /// Builds it for `board`, and returns the ELF's path. A program of other features takes the place of `styles`.
+    /// Builds it for `board`, and returns the ELF's path.
     ///
     /// # Errors
     /// When the program does not compile, or the board has too little memory for it.

@@ -3,10 +3,10 @@
 use crate::{Board, sources::sources};
 use anyhow::{Context, Result, ensure};
 use std::{
-    env,
+    env, fs,
     path::{Path, PathBuf},
     process::Command,
-    sync::Mutex,
+    sync::{Mutex, PoisonError},
 };
 
 /// Builds the firmware of `board` and returns the ELF's path.
@@ -36,8 +36,8 @@ pub fn antialias(board: Board) -> Result<PathBuf> {
     release("antialias", &features, board.target(), &format!("the firmware for {board} with smooth outlines"))
 }
 
-/// Builds the program `styles` for `board`, which draws in a style or pixel format that cargo features name, and returns the ELF's path. It takes the
-/// place of the program with other features.
+/// Builds the program `styles` for `board`, which draws in a style or pixel format that cargo features name, and returns the path of a copy of the ELF.
+/// Programs with other features have other copies, so that tests can run them side by side.
 ///
 /// # Errors
 /// When the board has no memory for it, the target or the compiler is missing, or the program does not compile.
@@ -45,7 +45,12 @@ pub fn styles(board: Board, features: &str) -> Result<PathBuf> {
     ensure!(board.smooths(), "{board} has no program for styles: they need more memory than it has");
     let all: Vec<_> =
         [board.name(), "styles"].into_iter().chain(features.split(',')).map(|name| format!("microphong-firmware/{name}")).collect();
-    release("styles", &all.join(","), board.target(), &format!("the program for {board} with {features}"))
+    static BUILDS: Mutex<()> = Mutex::new(());
+    let _one_at_a_time = BUILDS.lock().unwrap_or_else(PoisonError::into_inner);
+    let built = release("styles", &all.join(","), board.target(), &format!("the program for {board} with {features}"))?;
+    let copy = built.with_file_name(format!("styles-{board}-{}", features.replace(',', "-")));
+    fs::copy(&built, &copy).with_context(|| format!("{} cannot be copied", built.display()))?;
+    Ok(copy)
 }
 
 /// Builds a program of the workspace `firmware` with only these `features`, and returns its path. `what` is the program's name in messages.

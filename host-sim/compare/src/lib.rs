@@ -17,7 +17,7 @@ use edges::Edges;
 pub use edges::Jumps;
 use embedded_graphics_core::{geometry::Size, pixelcolor::Rgb565};
 use figures::Spread;
-use microphong::{Stream, renderer::check};
+use microphong::{Stream, features::Feature, renderer::check};
 use microphong_oracle::{self as oracle, Facet, Frame, Levels};
 use microphong_render::{
     choices::{self, Choices},
@@ -118,6 +118,8 @@ impl<'s> Reference<'s> {
 
     fn of(stream: Stream<'s>, frame: Frame, number: u32, perspective_correct: bool) -> Result<Self> {
         ensure!(stream.instances.is_empty(), "the scene has several objects, and the reference draws one: compare their meshes one by one");
+        let is_opaque = !Feature::Transparency.is_needed_by(&stream, &Format::Rgb888.channels());
+        ensure!(is_opaque, "the scene has transparent surfaces or holes, and the reference draws neither: convert it by --opaque");
         let size = frame.size;
         let (mut starts, mut facets, mut points) = (vec![0], Vec::new(), Vec::new());
         let mut shown = vec![false; frame.facets.len()];

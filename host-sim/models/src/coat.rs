@@ -45,6 +45,8 @@ pub struct Texels {
     pub palette: Vec<Rgb>,
     /// The colour of each texel as an index of the palette, row by row from the top.
     pub indices: Vec<u8>,
+    /// The colour of the palette that is a hole, if there is one.
+    pub hole: Option<u8>,
 }
 
 impl Texels {

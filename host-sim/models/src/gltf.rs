@@ -252,6 +252,10 @@ impl Reader<'_> {
                 self.scene.ignored.insert("textures");
             }
             let texture = texture.filter(|_| self.colours != Colours::None).and_then(|info| self.texture(&info));
+            let (texture, transparency) = seen_through(&material, texture);
+            if let Some(Some(material)) = self.scene.materials.last_mut() {
+                material.transparency = transparency;
+            }
             self.scene.textures.push(texture);
             let has_texture = gloss.is_some_and(|gloss| gloss.specular_glossiness_texture().is_some())
                 || pbr.metallic_roughness_texture().is_some()
@@ -264,10 +268,33 @@ impl Reader<'_> {
                 }
             };
             note(has_texture, "textures other than those of colour");
-            note(material.alpha_mode() != AlphaMode::Opaque, "transparency");
             note(!is_even && material.emissive_factor() != [0.0; 3], UNEVEN_LIGHT);
             self.numbers.len() - 1
         })
+    }
+}
+
+/// What is seen through a material: its texture with holes, and the share of the light from behind that it lets through. Where a texture is blended, it has
+/// holes where it is less than half opaque, and the rest has one opacity, which is the mean.
+fn seen_through(material: &gltf::Material<'_>, texture: Option<Texture>) -> (Option<Texture>, f64) {
+    let opacity = match material.pbr_specular_glossiness() {
+        Some(gloss) => gloss.diffuse_factor()[3],
+        None => material.pbr_metallic_roughness().base_color_factor()[3],
+    };
+    let opacity = f64::from(opacity).clamp(0.0, 1.0);
+    let cut = |share: f64| {
+        let is_cut = |texture: &Texture| texture.image.has_opacity();
+        texture.clone().map(|texture| if is_cut(&texture) { texture.cut(share) } else { texture })
+    };
+    match material.alpha_mode() {
+        AlphaMode::Opaque => (texture, 0.0),
+        // The factor and the texture are multiplied, and compared with the cutoff.
+        AlphaMode::Mask => (cut(f64::from(material.alpha_cutoff().unwrap_or(0.5)) / opacity.max(1e-6)), 0.0),
+        AlphaMode::Blend => {
+            let texture = cut(0.5);
+            let mean = texture.as_ref().map_or(1.0, |texture| texture.image.mean_opacity());
+            (texture, 1.0 - opacity * mean)
+        }
     }
 }
 

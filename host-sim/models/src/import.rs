@@ -18,11 +18,11 @@ use crate::{
     ply::{self, Ply},
     stl::{self, Stl},
     text,
-    texture::{Images, Texture},
+    texture::{Image, Images, Texture},
     threemf,
 };
 use anyhow::{Context, Result, bail};
-use std::{collections::HashMap, path::Path};
+use std::{collections::HashMap, path::Path, sync::Arc};
 
 /// A mesh from a file.
 #[derive(Clone, Debug)]
@@ -65,6 +65,8 @@ pub struct Rules {
     pub texture_size: TextureSize,
     /// Which triangles have backs.
     pub sides: Sides,
+    /// Nothing is seen through surfaces, and textures have no holes.
+    pub opaque: bool,
 }
 
 /// Reads and welds an OBJ file with the files of its materials beside it, a glTF file with the buffers beside it, an STL, a PLY or a 3MF file.
@@ -100,7 +102,11 @@ fn welded(path: &Path, bytes: &[u8], folder: &Folder, weld: Weld, rules: Rules) 
 /// # Errors
 /// Names the file, and what is wrong with it.
 pub(crate) fn made_of(contents: Contents, name: &str, weld: Weld, rules: Rules) -> Result<Imported> {
-    let Contents { soup, objects, mut materials, textures, mut ignored, mut faults, mut remarks } = contents;
+    let Contents { soup, objects, mut materials, mut textures, mut ignored, mut faults, mut remarks } = contents;
+    if rules.opaque {
+        materials.iter_mut().flatten().for_each(|material| material.transparency = 0.0);
+        textures.iter_mut().flatten().for_each(|texture| *texture = texture.cut(0.0));
+    }
     let (mut mesh, sources, report) = mesh::weld_with_sources(&soup, weld).with_context(|| name.to_owned())?;
     let painted = match rules.colours {
         Colours::None => Painted::default(),
@@ -114,6 +120,7 @@ pub(crate) fn made_of(contents: Contents, name: &str, weld: Weld, rules: Rules) 
     };
     let backs = backs::add(&mut mesh, has_two_sides);
     remarks.extend(painted.sentences());
+    remarks.extend(hardly_seen(&materials));
     remarks.extend(backs::sentence(backs, rules.sides));
     if !painted.has_any() {
         ignored.extend((!soup.colours.is_empty()).then_some("colours of vertices"));
@@ -136,6 +143,19 @@ pub(crate) fn made_of(contents: Contents, name: &str, weld: Weld, rules: Rules) 
     }
     let objects = names::distinct(objects, &mut remarks);
     Ok(Imported { mesh, report, objects, materials, faults, remarks, painted, backs })
+}
+
+/// The transparency from which a material counts as hardly seen: a stream has sixteenths.
+const HARDLY_SEEN: f64 = 31.0 / 32.0;
+
+/// A sentence on materials that are drawn although the file makes them invisible.
+fn hardly_seen(materials: &[Option<mtl::Material>]) -> Option<String> {
+    let is_hardly_seen = |material: &&mtl::Material| material.transparency >= HARDLY_SEEN;
+    let names: Vec<_> = materials.iter().flatten().filter(is_hardly_seen).map(|material| quoted(&material.name)).collect();
+    let names = names.join(", ");
+    (!names.is_empty()).then(|| {
+        format!("the file makes these materials invisible, and they are drawn with an opacity of 1/16: {names}; --opaque draws them whole")
+    })
 }
 
 /// Chooses the reader by how the file begins, or where that says nothing, by the ending of its name.
@@ -210,13 +230,27 @@ fn with_libraries(folder: &Folder, obj: Obj, colours: Colours) -> Result<Content
         remarks.push(format!("materials that no file defines have the colour of the command line: {}", unknown.join(", ")));
     }
     let images = &mut Images::default();
-    let named = || materials.iter().map(|material| material.as_ref()?.texture.as_ref());
     let textures = match colours {
         Colours::None => {
-            ignored.extend(named().any(|name| name.is_some()).then_some("textures"));
+            let has_texture = |material: &mtl::Material| material.texture.is_some() || material.mask.is_some();
+            ignored.extend(materials.iter().flatten().any(has_texture).then_some("textures"));
             Vec::new()
         }
-        Colours::Corners | Colours::Texture => named().map(|name| texture(name?, images, folder, &mut remarks)).collect(),
+        Colours::Corners | Colours::Texture => {
+            let of = |material: &Option<mtl::Material>| {
+                let mtl::Material { texture: colour, mask, .. } = material.as_ref()?;
+                let mut named = |name: &Option<String>| texture(name.as_ref()?, images, folder, &mut remarks);
+                let (colour, mask) = (named(colour), named(mask));
+                if mask.is_none() && colour.as_ref().is_some_and(|texture| texture.image.has_opacity()) {
+                    ignored.insert("opacity of textures of colour that no map_d names");
+                }
+                let Some(mask) = mask else { return colour };
+                let white = Arc::new(Image::white());
+                let image = colour.map_or(white, |texture| texture.image);
+                Some(Texture { image: Arc::new(image.with_opacity(&mask.image).cut(0.5)), ..mask })
+            };
+            materials.iter().map(of).collect()
+        }
     };
     Ok(Contents { soup, objects, materials, textures, ignored, faults, remarks })
 }

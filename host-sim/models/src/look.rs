@@ -21,8 +21,8 @@ use microphong::{
         MAX_GAIN, MAX_NAME,
         record::{
             CLOSED_CONVEX, Camera, Colour, CornerColours, DIRECTIONAL, EYE_SPACE, HAS_COLOURS, HAS_TEXTURE, Header, Instance, Key, Label,
-            Light, MAGIC, Material, Mesh, OBJECT_SPACE, ORTHOGRAPHIC, OWN_MATERIALS, PALETTE, PERSPECTIVE, POINT, SKY, Texture,
-            TextureCorners, Track, VERSION,
+            Light, MAGIC, Material, Mesh, OBJECT_SPACE, ORTHOGRAPHIC, OWN_MATERIALS, PALETTE, PERSPECTIVE, POINT, SKY, TRANSPARENCY_SHIFT,
+            Texture, TextureCorners, Track, VERSION,
         },
     },
 };
@@ -41,13 +41,21 @@ pub struct Surface {
     pub specular: V3,
     /// Exponent of the highlight. A larger exponent makes a smaller highlight.
     pub exponent: u16,
+    /// The share of the light from behind that it lets through, from 0 to 1. A stream has sixteenths, and at most 15 of them.
+    pub transparency: f64,
 }
 
 impl Surface {
     /// A metal, whose ambient, diffuse and specular reflectances have one colour. Every channel is then a multiple of one intensity.
     #[must_use]
     pub fn metal(colour: V3, [ambient, diffuse, specular]: [f64; 3], exponent: u16) -> Self {
-        Self { ambient: scale(colour, ambient), diffuse: scale(colour, diffuse), specular: scale(colour, specular), exponent }
+        Self {
+            ambient: scale(colour, ambient),
+            diffuse: scale(colour, diffuse),
+            specular: scale(colour, specular),
+            exponent,
+            transparency: 0.0,
+        }
     }
 
     /// A coloured body under a clear varnish: the highlight is white.
@@ -230,6 +238,12 @@ impl Look {
         Header { camera, radius: radius(parts).to_bits(), ..Header::new_zeroed() }
     }
 
+    /// The transparency of a part in sixteenths. What is hardly seen is seen a little.
+    fn transparency(&self, part: &Part) -> u8 {
+        let share = self.surfaces.get(usize::from(part.material)).map_or(0.0, |surface| surface.transparency);
+        (16.0 * share).round().clamp(0.0, 15.0) as u8
+    }
+
     /// Packs mesh and look into a stream and checks the result.
     ///
     /// # Errors
@@ -285,7 +299,7 @@ impl Look {
                     vertices,
                     material: part.material,
                     error: error.to_bits(),
-                    flags: if closed_convex { CLOSED_CONVEX } else { 0 } | coat,
+                    flags: if closed_convex { CLOSED_CONVEX } else { 0 } | coat | self.transparency(part) << TRANSPARENCY_SHIFT,
                     palette,
                 };
                 first_triangle += mesh.triangles;
@@ -342,8 +356,8 @@ struct Coats {
     colours: Vec<Colour>,
     textures: Vec<Texture>,
     texels: Vec<u8>,
-    /// The number of each palette, in units of [`PALETTE`] colours.
-    palettes: HashMap<Vec<Rgb>, u8>,
+    /// The number of each palette, in units of [`PALETTE`] colours, and which of its colours is a hole.
+    palettes: HashMap<(Vec<Rgb>, Option<u8>), u8>,
     /// The number of each texture.
     known: HashMap<Arc<Texels>, u8>,
 }
@@ -352,21 +366,23 @@ impl Coats {
     /// Adds a palette or texture. Returns the flag of meshes with it, and its number.
     fn add(&mut self, coat: &Coat) -> Result<(u8, u8)> {
         match coat {
-            Coat::Palette(palette) => Ok((HAS_COLOURS, self.palette(palette)?)),
+            Coat::Palette(palette) => Ok((HAS_COLOURS, self.palette(palette, None)?)),
             Coat::Texture(texels) => Ok((HAS_TEXTURE, self.texture(texels)?)),
         }
     }
 
-    fn palette(&mut self, palette: &[Rgb]) -> Result<u8> {
-        if let Some(&known) = self.palettes.get(palette) {
+    fn palette(&mut self, palette: &[Rgb], hole: Option<u8>) -> Result<u8> {
+        let key = (palette.to_vec(), hole);
+        if let Some(&known) = self.palettes.get(&key) {
             return Ok(known);
         }
         let next = self.colours.len().div_ceil(PALETTE);
         let number = u8::try_from(next)
             .context("too many colours for one stream; give some meshes one colour, or leave colours out by --colours none")?;
         self.colours.resize(next * PALETTE, BLACK);
-        self.colours.extend(palette.iter().map(|&channels| Colour { channels, unused: 0 }));
-        self.palettes.insert(palette.to_vec(), number);
+        let record = |(index, &channels): (u8, &Rgb)| Colour { hole: u8::from(hole == Some(index)), ..Colour::new(channels) };
+        self.colours.extend((0..=u8::MAX).zip(palette).map(record));
+        self.palettes.insert(key, number);
         Ok(number)
     }
 
@@ -374,10 +390,10 @@ impl Coats {
         if let Some(&known) = self.known.get(texels) {
             return Ok(known);
         }
-        let palette = self.palette(&texels.palette)?;
+        let palette = self.palette(&texels.palette, texels.hole)?;
         let number = u8::try_from(self.textures.len())
             .context("too many textures for one stream; join some in one image, or leave textures out by --colours corners")?;
-        self.textures.push(Texture { size: texels.size, palette, unused: 0 });
+        self.textures.push(Texture { size: texels.size, palette, has_holes: u8::from(texels.hole.is_some()) });
         self.texels.extend_from_slice(&texels.indices);
         self.known.insert(Arc::clone(texels), number);
         Ok(number)
@@ -385,7 +401,7 @@ impl Coats {
 }
 
 /// What fills a palette up.
-const BLACK: Colour = Colour { channels: [0; 3], unused: 0 };
+const BLACK: Colour = Colour::new([0; 3]);
 
 /// The colours at the corners of all triangles, up to the last one that has some.
 fn corner_colours(parts: &[Part]) -> Vec<CornerColours> {
@@ -393,7 +409,7 @@ fn corner_colours(parts: &[Part]) -> Vec<CornerColours> {
     let last = parts.iter().rposition(has_corners);
     let mut corners = Vec::new();
     for part in parts.iter().take(last.map_or(0, |last| last + 1)) {
-        let colour = |index: u8| Colour { channels: part.palette()[usize::from(index)], unused: 0 };
+        let colour = |index: u8| Colour::new(part.palette()[usize::from(index)]);
         let record = |paints: [Paint; 3]| match paints {
             [Paint::Colour(a), Paint::Colour(b), Paint::Colour(c)] => CornerColours::new([a, b, c], [a, b, c].map(colour)),
             _ => NO_COLOURS,
@@ -433,7 +449,7 @@ fn gain(x: f64) -> Gain {
 }
 
 fn material(surface: &Surface) -> Material {
-    let Surface { ambient, diffuse, specular, exponent } = *surface;
+    let Surface { ambient, diffuse, specular, exponent, .. } = *surface;
     Material::new(ambient.map(gain), diffuse.map(gain), specular.map(gain), exponent)
 }
 

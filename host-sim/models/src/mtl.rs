@@ -37,6 +37,10 @@ pub struct Material {
     pub emission: V3,
     /// `map_Kd`: the file of the texture.
     pub texture: Option<String>,
+    /// `map_d`: the file of the texture's opacity.
+    pub mask: Option<String>,
+    /// 1 less `d`, or else `Tr`: the share of the light from behind that the surface lets through.
+    pub transparency: f64,
     /// Whether triangles are seen from behind as well.
     pub two_sided: bool,
 }
@@ -77,6 +81,7 @@ impl Material {
             diffuse,
             specular: self.specular.unwrap_or_default(),
             exponent: self.exponent.unwrap_or(EXPONENT).round().clamp(1.0, SHARPEST) as u16,
+            transparency: self.transparency,
         }
     }
 }
@@ -88,6 +93,8 @@ impl Material {
 pub fn parse(text: &str) -> Result<Mtl> {
     let mut mtl = Mtl::default();
     let mut shines_by_texture = Vec::new();
+    // Of the material that is read.
+    let mut has_opacity = false;
     for (number, line) in logical_lines(&plain(text)) {
         let mut words = line.split_whitespace();
         let Some(written) = words.next() else { continue };
@@ -98,12 +105,12 @@ pub fn parse(text: &str) -> Result<Mtl> {
                 bail!("line {number}: newmtl: a name is missing");
             }
             mtl.materials.push(Material { name, ..Material::default() });
+            has_opacity = false;
             continue;
         }
         let ignored = match keyword.as_str() {
-            "d" if words.clone().next() == Some("1") => None,
-            "d" | "tr" | "tf" => Some("transparency"),
-            "map_kd" => None,
+            "tf" => Some("colours of light that surfaces let through"),
+            "map_kd" | "map_d" => None,
             _ if keyword.starts_with("map_") || ["bump", "disp", "decal", "norm", "refl"].contains(&keyword.as_str()) => {
                 Some("textures other than those of colour")
             }
@@ -121,6 +128,14 @@ pub fn parse(text: &str) -> Result<Mtl> {
             "ns" => material.exponent = Some(share(words.next().unwrap_or_default()).with_context(place)?),
             // Illumination models without a highlight.
             "illum" if ["0", "1"].contains(&words.next().unwrap_or_default()) => material.specular = Some([0.0; 3]),
+            // `-halo` comes before a number that holds for the middle of a sphere.
+            "d" => {
+                let opacity = share(words.find(|word| *word != "-halo").unwrap_or_default()).with_context(place)?;
+                (material.transparency, has_opacity) = (1.0 - opacity.min(1.0), true);
+            }
+            // Some programs write that all is let through, and beside it the opacity of a wall.
+            "tr" if !has_opacity => material.transparency = share(words.next().unwrap_or_default()).with_context(place)?.min(1.0),
+            "map_d" => material.mask = Some(file_of(&rest(&line))).filter(|name| !name.is_empty()),
             "map_kd" => material.texture = Some(file_of(&rest(&line))).filter(|name| !name.is_empty()),
             _ => {}
         }
@@ -181,13 +196,14 @@ mod tests {
         let mtl = parse("# from a modeller\nnewmtl red paint\nKa 1 1 1\nKd 0.8 0.1 0\nKs 0.5\nNs 96.1\nd 1\nillum 2\nnewmtl bare\nmap_Kd -s 1 1 1 -clamp on bare wood.png\nmap_Bump bare.png\nnewmtl matt\nKs 1 1 1\nillum 1\nTr 0.5\n").unwrap();
         let [red, bare, matt] = &mtl.materials[..] else { panic!("{mtl:?}") };
         assert_eq!(red.name, "red paint");
-        let Surface { ambient, diffuse, specular, exponent } = red.surface(0.125);
+        let Surface { ambient, diffuse, specular, exponent, .. } = red.surface(0.125);
         assert_eq!((ambient, diffuse, specular, exponent), ([0.125; 3], [0.8, 0.1, 0.0], [0.5; 3], 96));
-        let Surface { ambient, diffuse, specular, exponent } = bare.surface(0.5);
+        let Surface { ambient, diffuse, specular, exponent, .. } = bare.surface(0.5);
         assert_eq!((ambient, diffuse, specular, exponent), (scale(DIFFUSE, 0.5), DIFFUSE, [0.0; 3], 30));
         assert_eq!(matt.surface(0.1).specular, [0.0; 3]);
         assert_eq!(bare.texture.as_deref(), Some("bare wood.png"));
-        assert_eq!(mtl.ignored.into_iter().collect::<Vec<_>>(), ["textures other than those of colour", "transparency"]);
+        assert_eq!(mtl.ignored.into_iter().collect::<Vec<_>>(), ["textures other than those of colour"]);
+        assert_eq!([red, bare, matt].map(|material| material.transparency), [0.0, 0.0, 0.5]);
     }
 
     #[test]
@@ -217,6 +233,18 @@ mod tests {
             assert_eq!(material.surface(0.5).ambient, add(scale(material.surface(0.0).diffuse, 0.5), emission), "{text}");
             assert_eq!(mtl.ignored.contains(UNEVEN_LIGHT), is_told, "{text}");
         }
+    }
+
+    /// `d` counts, whatever `Tr` beside it says.
+    #[test]
+    fn surfaces_let_light_through() {
+        for (text, transparency) in
+            [("d 0.25", 0.75), ("Tr 0.25", 0.25), ("d 1\nTr 1", 0.0), ("Tr 1\nd 1", 0.0), ("d -halo 0.5", 0.5), ("d 7", 0.0), ("Kd 1", 0.0)]
+        {
+            let mtl = parse(&format!("newmtl before\nd 0.5\nnewmtl a\n{text}\nnewmtl after\nd 0.5")).unwrap();
+            assert_eq!(mtl.materials[1].transparency, transparency, "{text}");
+        }
+        assert_eq!(parse("newmtl a\nmap_d -mm 0 1 \"leaf mask.png\"").unwrap().materials[0].mask.as_deref(), Some("leaf mask.png"));
     }
 
     /// Black beside a texture is no colour, as Maya writes it; black alone is.

@@ -51,7 +51,8 @@ pub(crate) fn paint(
     let facets = Facets { soup, textures, sources, parts: HashMap::new() };
     let mut painting = Painting::at_corners(mesh, &facets, &fitting, (BLOCKS, &|_| false));
     let areas = painting.areas(materials.len());
-    let is_lost: Vec<bool> = areas.iter().map(Area::is_lost).collect();
+    let has_holes = holes(mesh, &facets, &fitting, materials.len());
+    let is_lost: Vec<bool> = areas.iter().zip(&has_holes).map(|(area, has_holes)| area.is_lost() || *has_holes).collect();
     let textured = size.filter(|_| is_lost.contains(&true)).map(|size| {
         let takes = |facet: Facet<'_>| facet.is_white && facet.places().is_some();
         let takes = |triangle: usize| is_lost[mesh.submesh(triangle).material] && facets.of(mesh, triangle).is_some_and(takes);
@@ -61,15 +62,26 @@ pub(crate) fn paint(
         painting = Painting::at_corners(mesh, &facets, &fitting, (blocks, &|triangle| takes[triangle]));
         painting.put_on(&textures, &fitting, &is_lost)
     });
-    let all = areas.into_iter().filter(Area::is_lost).fold(Area::default(), |sum, area| sum.with(area));
+    let all = areas.iter().copied().filter(Area::is_lost).fold(Area::default(), |sum, area| sum.with(area));
     let painted = Painted {
-        lost_materials: is_lost.iter().filter(|is_lost| **is_lost).count(),
+        lost_materials: areas.iter().filter(|area| area.is_lost()).count(),
         lost_area: all.share(),
+        materials_with_holes: has_holes.iter().filter(|has_holes| **has_holes).count(),
         textures: textured,
         ..painting.report()
     };
     *mesh = painting.mesh;
     Painted { materials: with_materials(mesh, materials), ..painted }
+}
+
+/// The materials whose texture has a hole on one of their triangles.
+fn holes(mesh: &Mesh, facets: &Facets<'_>, fitting: &Fitting, materials: usize) -> Vec<bool> {
+    let mut has_holes = vec![false; materials];
+    for triangle in 0..mesh.triangles.len() {
+        let has_hole = &mut has_holes[mesh.submesh(triangle).material];
+        *has_hole = *has_hole || facets.of(mesh, triangle).is_some_and(|facet| fitting.has_hole(&facet));
+    }
+    has_holes
 }
 
 /// An area, and how much of it is far from its texture.

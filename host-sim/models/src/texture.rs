@@ -18,6 +18,10 @@ pub(crate) struct Image {
     width: usize,
     /// Red, green and blue, row by row from the top.
     pixels: Vec<Rgb>,
+    /// The opacity of each pixel, or nothing if all are opaque.
+    opacity: Vec<u8>,
+    /// Whether each pixel is a hole, or nothing if none is.
+    holes: Vec<bool>,
 }
 
 /// An image on a surface.
@@ -96,17 +100,79 @@ impl Image {
     fn of(width: usize, data: &[u8], channels: usize) -> Result<Self> {
         ensure!(width > 0 && channels > 0 && data.len() >= width * channels, "the image is empty");
         let colour = |pixel: &[u8]| if channels < 3 { [pixel[0]; 3] } else { [pixel[0], pixel[1], pixel[2]] };
-        Ok(Self { width, pixels: data.chunks_exact(channels).map(colour).collect() })
+        let all = data.chunks_exact(channels);
+        let opacity: Vec<u8> = if channels % 2 == 0 { all.clone().filter_map(|pixel| pixel.last().copied()).collect() } else { Vec::new() };
+        let opacity = if opacity.iter().all(|&opacity| opacity == u8::MAX) { Vec::new() } else { opacity };
+        Ok(Self { width, pixels: all.map(colour).collect(), opacity, holes: Vec::new() })
+    }
+
+    /// Whether it says of a pixel that it is not opaque.
+    pub(crate) fn has_opacity(&self) -> bool {
+        !self.opacity.is_empty()
+    }
+
+    /// The image with holes where its opacity is less than this share.
+    pub(crate) fn cut(&self, share: f64) -> Self {
+        let is_hole = |&opacity: &u8| f64::from(opacity) < 255.0 * share;
+        let holes: Vec<bool> = self.opacity.iter().map(is_hole).collect();
+        let holes = if holes.contains(&true) { holes } else { Vec::new() };
+        Self { width: self.width, pixels: self.pixels.clone(), opacity: self.opacity.clone(), holes }
+    }
+
+    /// The mean opacity of what is no hole, from 0 to 1.
+    pub(crate) fn mean_opacity(&self) -> f64 {
+        let is_there = |&(number, _): &(usize, &u8)| !self.is_hole(number);
+        let (sum, count) = self
+            .opacity
+            .iter()
+            .enumerate()
+            .filter(is_there)
+            .fold((0.0, 0), |(sum, count), (_, &opacity)| (sum + f64::from(opacity) / 255.0, count + 1));
+        if count > 0 { sum / f64::from(count) } else { 1.0 }
+    }
+
+    /// The image with the opacity of another one: that image's own, or else its brightness. It has the size of the larger one.
+    pub(crate) fn with_opacity(&self, mask: &Self) -> Self {
+        let size @ [width, height] = [0, 1].map(|axis| self.size()[axis].max(mask.size()[axis]));
+        let scaled = |own: [usize; 2], x: usize, y: usize| y * own[1] / height * own[0] + x * own[0] / width;
+        let all = |own: [usize; 2]| (0..size[1]).flat_map(move |y| (0..size[0]).map(move |x| scaled(own, x, y)));
+        let brightness = |[r, g, b]: Rgb| ((299 * u32::from(r) + 587 * u32::from(g) + 114 * u32::from(b)) / 1000) as u8;
+        let opacity = |number: usize| if mask.has_opacity() { mask.opacity[number] } else { brightness(mask.pixels[number]) };
+        Self {
+            width,
+            pixels: all(self.size()).map(|number| self.pixels[number]).collect(),
+            opacity: all(mask.size()).map(opacity).collect(),
+            holes: Vec::new(),
+        }
+    }
+
+    /// An image of one white pixel.
+    pub(crate) fn white() -> Self {
+        Self { width: 1, pixels: vec![[255; 3]], opacity: Vec::new(), holes: Vec::new() }
+    }
+
+    fn is_hole(&self, number: usize) -> bool {
+        self.holes.get(number) == Some(&true)
     }
 }
 
 impl Image {
     /// The colour of the pixel at a place, of which 1 is the whole width and height. The image repeats itself.
-    pub(crate) fn at(&self, [x, y]: [f64; 2]) -> V3 {
+    pub(crate) fn at(&self, place: [f64; 2]) -> V3 {
+        let [r, g, b] = self.pixels[self.number_at(place)];
+        [f64::from(r) / 255.0, f64::from(g) / 255.0, f64::from(b) / 255.0]
+    }
+
+    /// Whether there is a hole at a place.
+    pub(crate) fn is_hole_at(&self, place: [f64; 2]) -> bool {
+        !self.holes.is_empty() && self.is_hole(self.number_at(place))
+    }
+
+    /// The number of the pixel at a place.
+    fn number_at(&self, [x, y]: [f64; 2]) -> usize {
         let [_, height] = self.size();
         let place = |coordinate: f64, size: usize| (((coordinate - coordinate.floor()) * size as f64) as usize).min(size - 1);
-        let [r, g, b] = self.pixels[place(y, height) * self.width + place(x, self.width)];
-        [f64::from(r) / 255.0, f64::from(g) / 255.0, f64::from(b) / 255.0]
+        place(y, height) * self.width + place(x, self.width)
     }
 
     /// Width and height.
@@ -114,18 +180,26 @@ impl Image {
         [self.width, self.pixels.len() / self.width]
     }
 
-    /// The image in another width and height: each pixel has the mean colour of the area that it covers.
-    pub(crate) fn resampled(&self, [width, height]: [usize; 2]) -> Vec<Rgb> {
+    /// The image in another width and height: each pixel has the mean colour of the area that it covers, without its holes. `None` is a hole: there holes are
+    /// more than half of the area.
+    pub(crate) fn resampled(&self, [width, height]: [usize; 2]) -> Vec<Option<Rgb>> {
         let own = self.size();
         let [columns, rows] = [covered(own[0], width), covered(own[1], height)];
         let mean = |row: &Cover, column: &Cover| {
-            let mut sum = [0.0; 3];
+            let (mut sum, mut seen, mut all) = ([0.0; 3], 0.0, 0.0);
             for (y, down) in row.iter() {
                 for (x, along) in column.iter() {
-                    sum = add(sum, scale(self.pixels[y * own[0] + x].map(f64::from), down * along));
+                    let (number, share) = (y * own[0] + x, down * along);
+                    all += share;
+                    if !self.is_hole(number) {
+                        sum = add(sum, scale(self.pixels[number].map(f64::from), share));
+                        seen += share;
+                    }
                 }
             }
-            sum.map(|c| c.round() as u8)
+            // Without holes, the area is 1.
+            let seen = if seen == all { 1.0 } else { seen };
+            (2.0 * seen > all).then(|| sum.map(|c| (c / seen).round() as u8))
         };
         rows.iter().flat_map(|row| columns.iter().map(move |column| mean(row, column))).collect()
     }
@@ -157,6 +231,11 @@ fn covered(own: usize, new: usize) -> Vec<Cover> {
 }
 
 impl Texture {
+    /// The texture with holes where its opacity is less than this share.
+    pub(crate) fn cut(&self, share: f64) -> Self {
+        Self { image: Arc::new(self.image.cut(share)), ..self.clone() }
+    }
+
     /// The place on the image at coordinates of the surface.
     pub(crate) fn place(&self, [u, v]: [f64; 2]) -> [f64; 2] {
         self.transform.map(|[a, b, c]| a * u + b * v + c)

@@ -2,7 +2,9 @@
 
 use meshoptimizer_rs::codec::{VertexEncoding, encode_vertex_buffer};
 use microphong_models::{
-    import::{self, Imported},
+    coat::{Coat, TextureSize},
+    contents::Colours,
+    import::{self, Imported, Rules},
     look::{Look, Surface},
     mesh::{Mesh, Weld},
     quantise::quantise,
@@ -281,6 +283,55 @@ fn materials_have_sides_and_send_out_light() {
     assert_eq!(uneven.remarks, ["left out: light that textured materials send out, textures other than those of colour"]);
 }
 
+/// Opacity counts where the material says so: a texture is cut at the cutoff, or at a half where it is blended, and the rest has its mean.
+#[test]
+fn materials_are_seen_through() {
+    let place = Place::new();
+    let (mut document, mut bytes) = cube().gltf();
+    let mut image = Vec::new();
+    let mut encoder = png::Encoder::new(&mut image, 4, 1);
+    encoder.set_color(png::ColorType::Rgba);
+    let pixels = [[255, 0, 0, 255], [0, 255, 0, 153], [0, 0, 255, 102], [9, 9, 9, 0]].concat();
+    encoder.write_header().unwrap().write_image_data(&pixels).unwrap();
+    place.file("a.png", image);
+    // One place for each vertex.
+    let vertices = document["accessors"][1]["count"].as_u64().unwrap() as usize;
+    let before = bytes.len();
+    bytes.extend((0..vertices).flat_map(|vertex| [(vertex % 4) as f32 / 4.0 + 0.125, 0.5]).flat_map(f32::to_le_bytes));
+    let views = document["bufferViews"].as_array_mut().unwrap();
+    views.push(json!({"buffer": 0, "byteOffset": before, "byteLength": bytes.len() - before}));
+    let view = views.len() - 1;
+    let accessors = document["accessors"].as_array_mut().unwrap();
+    accessors.push(json!({"bufferView": view, "componentType": 5126, "count": vertices, "type": "VEC2"}));
+    let accessor = accessors.len() - 1;
+    document["buffers"][0]["byteLength"] = bytes.len().into();
+    document["meshes"][0]["primitives"][0]["attributes"]["TEXCOORD_0"] = accessor.into();
+    document["meshes"][0]["primitives"][0]["material"] = 0.into();
+    document["textures"] = json!([{"source": 0}]);
+    document["images"] = json!([{"uri": "a.png"}]);
+    let mut of = |opacity: f64, mut material: Value| {
+        material["pbrMetallicRoughness"] = json!({"baseColorFactor": [1, 1, 1, opacity], "baseColorTexture": {"index": 0}});
+        document["materials"] = json!([material]);
+        let rules = Rules { colours: Colours::Texture, texture_size: TextureSize::of(8).unwrap(), ..Rules::default() };
+        let imported = import::file_by(&place.file("a.glb", glb(&document, &bytes)), Weld::default(), rules).unwrap();
+        let textures = imported.mesh.coats.iter().filter_map(|coat| match coat {
+            Coat::Texture(texels) => Some(texels.indices.iter().map(|&index| texels.hole == Some(index)).collect::<Vec<_>>()),
+            Coat::Palette(_) => None,
+        });
+        let transparency = imported.materials[0].as_ref().unwrap().transparency;
+        (textures.collect::<Vec<_>>().concat(), (100.0 * transparency).round())
+    };
+    let last = vec![false, false, false, true];
+    assert_eq!(of(0.25, json!({})).1, 0.0);
+    assert_eq!(of(1.0, json!({"alphaMode": "MASK", "alphaCutoff": 0.25})), (last.clone(), 0.0));
+    assert_eq!(of(0.5, json!({"alphaMode": "MASK", "alphaCutoff": 0.1})), (last, 0.0));
+    let two = vec![false, false, true, true];
+    assert_eq!(of(1.0, json!({"alphaMode": "MASK"})), (two.clone(), 0.0));
+    // The mean of 1 and 0.6.
+    assert_eq!(of(1.0, json!({"alphaMode": "BLEND"})), (two.clone(), 20.0));
+    assert_eq!(of(0.5, json!({"alphaMode": "BLEND"})), (two, 60.0));
+}
+
 /// Each material is a mesh of the stream, and the output names what is left out.
 #[test]
 fn materials_become_meshes_and_the_rest_is_told() {
@@ -303,7 +354,7 @@ fn materials_become_meshes_and_the_rest_is_told() {
         texture.starts_with("the image 0 is left out: cannot read ") && texture.ends_with("none.png; put it beside the mesh"),
         "{texture}"
     );
-    assert_eq!(others, "left out: animations, lines and points, transparency");
+    assert_eq!(others, "left out: animations, lines and points");
     let [Some(gold), Some(paint)] = &imported.materials[..] else { panic!("{:?}", imported.materials) };
     assert_eq!((&gold.name[..], gold.exponent, &paint.name[..], paint.exponent), ("gold", Some(30.0), "paint", Some(510.0)));
     let (parts, _) = quantise(&imported.mesh);

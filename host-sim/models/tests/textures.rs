@@ -247,7 +247,7 @@ fn equal_textures_are_written_once() {
     let flags: Vec<u8> = stream.meshes.iter().map(|mesh| mesh.flags & (HAS_COLOURS | HAS_TEXTURE)).collect();
     assert_eq!(flags, [HAS_TEXTURE, HAS_TEXTURE, HAS_COLOURS]);
     // The palette of the colours at corners is apart from that of the texture.
-    assert_eq!((stream.textures().list, stream.textures().texels.len()), (&[Texture { size: [3, 3], palette: 0, unused: 0 }][..], 64));
+    assert_eq!((stream.textures().list, stream.textures().texels.len()), (&[Texture { size: [3, 3], palette: 0, has_holes: 0 }][..], 64));
     assert_eq!((stream.meshes[2].palette, stream.colours[16].channels, stream.colours.len()), (1, [7, 8, 9], 17));
     assert_eq!(stream.materials[1].diffuse().map(|gain| gain.to_num::<f64>()), [1.0, 0.5, 1.0]);
     let painted = converted.painted;

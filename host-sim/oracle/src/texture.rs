@@ -27,7 +27,7 @@ pub struct Texture {
 impl Texture {
     /// The texture of a triangle of a mesh, whose corners in the order `turn` of the record have this inverse depth; `None` if the mesh has none.
     pub(super) fn of(stream: Stream<'_>, mesh: &record::Mesh, id: u32, turn: [usize; 3], inv_depth: V3) -> Option<Self> {
-        let MeshTexture { palette, texels, size, corners } = stream.texture_of(mesh)?;
+        let MeshTexture { palette, texels, size, corners, .. } = stream.texture_of(mesh)?;
         let record::TextureCorners(corners) = corners[(id - mesh.first_triangle) as usize];
         Some(Self {
             places: turn.map(|corner| corners[corner].map(|c| f64::from(c) / 4096.0)),

@@ -55,6 +55,10 @@ pub(crate) struct MeshOptions {
     /// power of two, or to this number. It needs --colours texture.
     #[arg(long, value_name = "TEXELS", value_parser = parse::texture_size)]
     texture_size: Option<TextureSize>,
+    /// Draw transparent materials as if nothing were seen through them, and fill in the holes of textures. Without this option a program needs the feature
+    /// transparency for them.
+    #[arg(long)]
+    opaque: bool,
     /// Merge all objects into one object without a name, which takes less flash. It has one mesh for each material.
     #[arg(long)]
     merge: bool,
@@ -144,6 +148,7 @@ impl MeshOptions {
                 },
                 texture_size: self.texture_size.unwrap_or_default(),
                 colours: if self.colour.is_some() { Colours::None } else { self.colours },
+                opaque: self.opaque,
             },
             merge: self.merge,
             surface: material(self.colour.unwrap_or(colour), shares, self.exponent.unwrap_or(exponent)),

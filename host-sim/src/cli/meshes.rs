@@ -22,6 +22,10 @@ pub(crate) struct Row {
     of_one_colour: usize,
     /// Width and height of its texture.
     texture: Option<[u32; 2]>,
+    /// Whether the texture has holes.
+    has_holes: bool,
+    /// The part of the light from behind that it lets through, in sixteenths.
+    transparency: u8,
 }
 
 /// All meshes of a stream.
@@ -34,6 +38,7 @@ pub(crate) fn rows(stream: &Stream<'_>) -> Result<Vec<Row>, StreamError> {
         match rows.last_mut() {
             Some(row) if mesh.error > 0 => row.end += 1,
             _ => {
+                let texture = stream.texture_of(mesh);
                 let corners = stream.colours_of(mesh).map_or(&[][..], |colours| colours.corners);
                 let mut colours: Vec<u8> = corners.iter().flat_map(|corners| corners.colours).collect();
                 colours.sort_unstable();
@@ -46,7 +51,9 @@ pub(crate) fn rows(stream: &Stream<'_>) -> Result<Vec<Row>, StreamError> {
                     triangles: mesh.triangles,
                     colours: colours.len(),
                     of_one_colour: corners.iter().filter(|corners| corners.range == 0).count(),
-                    texture: stream.texture_of(mesh).map(|texture| texture.size.map(|side| 1 << side)),
+                    has_holes: texture.is_some_and(|texture| texture.has_holes),
+                    texture: texture.map(|texture| texture.size.map(|side| 1 << side)),
+                    transparency: mesh.transparency(),
                 });
             }
         }
@@ -61,22 +68,25 @@ pub(crate) fn rows(stream: &Stream<'_>) -> Result<Vec<Row>, StreamError> {
     Ok(rows)
 }
 
-/// Lists at most `most` meshes, if there are several, or objects have names, or triangles have colours or a texture. `materials` are names from the converted file.
+/// Lists at most `most` meshes, if there are several, or one has a name, colours, a texture, or is transparent. `materials` are names from the converted file.
 pub(crate) fn text(rows: &[Row], materials: &[Option<&str>], most: usize) -> Result<()> {
-    if matches!(rows, [Row { name: None, colours: 0, texture: None, .. }]) {
+    if matches!(rows, [Row { name: None, colours: 0, texture: None, transparency: 0, .. }]) {
         return Ok(());
     }
-    for Row { index, end, name, material, triangles, colours, of_one_colour, texture } in rows.iter().take(most) {
+    for Row { index, end, name, material, triangles, colours, of_one_colour, texture, has_holes, transparency } in rows.iter().take(most) {
         let name = name.as_ref().map_or_else(String::new, |name| format!("{name:?}, "));
         let of = materials.get(usize::from(*material)).copied().flatten().map_or_else(String::new, |of| format!(" {of:?}"));
         let meshes = if end - index > 1 { format!("meshes {index} to {}", end - 1) } else { format!("mesh {index}") };
         let triangles = report::counted(*triangles, report::TRIANGLES);
         let colours = match colours {
-            0 => texture.map_or_else(String::new, |[width, height]| format!(" with a texture of {width}x{height}")),
+            0 => texture.map_or_else(String::new, |[width, height]| {
+                format!(" with a texture of {width}x{height}{}", if *has_holes { " that has holes" } else { "" })
+            }),
             1 => ", all of one colour".to_owned(),
             several => format!(" with {several} colours, {} of them of one colour", report::grouped(*of_one_colour as u64)),
         };
-        report::line(&format!("  {meshes}: {name}material {material}{of}, {triangles}{colours}"))?;
+        let seen = if *transparency == 0 { String::new() } else { format!(", lets through {transparency}/16 of what is behind it") };
+        report::line(&format!("  {meshes}: {name}material {material}{of}, {triangles}{colours}{seen}"))?;
     }
     if rows.len() > most {
         report::line(&format!("  and {} more: `microphong inspect` lists all", report::counted(rows.len() - most, MESHES)))?;

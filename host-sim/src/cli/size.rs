@@ -183,6 +183,7 @@ fn features_of(scene: &Scene, arguments: &Arguments) -> Result<Vec<Features>> {
         (Feature::Antialias, "the lines along outlines"),
         (Feature::VertexColours, "the colours, by convert --colours none"),
         (Feature::Textures, "the textures, by convert --colours none"),
+        (Feature::Transparency, "what is seen through surfaces, by convert --opaque"),
     ];
     for (feature, what) in lacking {
         let name = feature.name();

@@ -124,6 +124,7 @@ pub fn draw(corners: Corners, band_rows: usize, counts: &mut [u8]) -> u32 {
             rows: rows as i32,
             active: ActiveTriangles::default(),
             counts: Counts::default(),
+            sheet: Default::default(),
         };
         let screen = ScreenTriangle::new(corners, [0, WIDTH as i32], [top, top + rows].map(|row| row as i32));
         let visible = Bounds::new(&Extent::new(screen.corners)).clipped(Bounds::whole(WIDTH as i32, HEIGHT as i32)).sides();

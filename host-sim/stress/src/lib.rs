@@ -23,6 +23,7 @@ pub mod shrink;
 pub mod texts;
 mod textures;
 pub mod tiles;
+mod transparency;
 pub mod walks;
 pub mod watertight;
 

@@ -223,7 +223,7 @@ impl Records {
 }
 
 /// What fills a palette up.
-const BLACK: Colour = Colour { channels: [0; 3], unused: 0 };
+const BLACK: Colour = Colour::new([0; 3]);
 /// The record of a triangle without colours.
 const NONE: CornerColours = CornerColours { colours: [0; 3], range: 0 };
 

@@ -6,6 +6,7 @@ use crate::{
     case::Case,
     random::Random,
     scenes::{self, Wishes},
+    transparency,
 };
 use anyhow::{Result, ensure};
 use embedded_graphics_core::pixelcolor::Rgb565;
@@ -30,6 +31,7 @@ impl Family for Sameness {
         else {
             return Verdict::skipped();
         };
+        case.stream = transparency::sometimes(random, case.stream);
         if random.once_in(4) {
             case.style.outlines = Some(Outlines::new([random.bits() as u8, 128, 255]).alone(random.once_in(2)));
         }

@@ -53,8 +53,8 @@ pub(crate) fn paint(random: &mut Random, stream: &StreamBytes) -> Option<StreamB
 fn add(random: &mut Random, records: &mut Records) -> Option<()> {
     let palette = colours::palette(random);
     let next = records.colours.len().div_ceil(PALETTE);
-    records.colours.resize(next * PALETTE, Colour { channels: [0; 3], unused: 0 });
-    records.colours.extend(palette.iter().map(|&channels| Colour { channels, unused: 0 }));
+    records.colours.resize(next * PALETTE, Colour::new([0; 3]));
+    records.colours.extend(palette.iter().map(|&channels| Colour::new(channels)));
     let size = [(); 2].map(|()| random.pick(0..i32::from(LARGEST_TEXTURE) + 1) as u8);
     let texels = 1 << (size[0] + size[1]);
     let (kind, colours) = (random.pick(0..3), palette.len());
@@ -67,7 +67,7 @@ fn add(random: &mut Random, records: &mut Records) -> Option<()> {
         };
         (colour % colours) as u8
     }));
-    records.textures.push(Texture { size, palette: u8::try_from(next).ok()?, unused: 0 });
+    records.textures.push(Texture { size, palette: u8::try_from(next).ok()?, has_holes: 0 });
     Some(())
 }
 

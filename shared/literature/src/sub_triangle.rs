@@ -8,7 +8,7 @@ use microphong::{
     format::{FINE, SPLITS},
     math::vector::zip,
     method::{
-        Area, Canvas, Field, Gradients, IfTextured, IntensityShader, NEAR, OnTexture, Patch, PlacePatch, Plane, Sampler, ScreenTriangle,
+        Area, Canvas, Field, Gradients, IfTextured, IntensityShader, NEAR, OnTexture, Patch, PlacePatch, Placed, Plane, ScreenTriangle,
         Shaded, SpanShader, TriangleSetup,
     },
 };
@@ -68,7 +68,7 @@ pub struct Parts<'f> {
     screen: &'f ScreenTriangle,
     gradients: Gradients,
     depth: Plane<1>,
-    texture: IfTextured<Option<(&'f Sampler<'f>, PlacePatch)>>,
+    texture: IfTextured<Option<Placed<'f, PlacePatch>>>,
 }
 
 impl<'f> Parts<'f> {
@@ -122,15 +122,15 @@ impl Part<'_> {
     fn draw_textured<F: Field, S: IntensityShader<F::Value>>(
         &self,
         place: &ScreenSubTriangle,
-        (sampler, mut patch): (&Sampler<'_>, PlacePatch),
+        mut texture: Placed<'_, PlacePatch>,
         field: &F,
         shader: S,
         canvas: &mut dyn Canvas,
     ) -> u32 {
         let Parts { gradients: whole, depth, .. } = self.whole;
         let gradients = place.gradients(whole);
-        patch.jump(gradients.row().wrapping_sub(whole.row()));
-        let patch = (field.fit(&gradients), patch);
+        texture.jump(gradients.row().wrapping_sub(whole.row()));
+        let (patch, sampler) = ((field.fit(&gradients), texture), texture.sampler);
         place.draw(gradients.row(), *depth, &mut Shaded::new(patch, OnTexture { sampler, shader }), canvas)
     }
 }

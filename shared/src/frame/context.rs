@@ -2,7 +2,7 @@
 
 use crate::{
     edges::{Edge, find::Outlined},
-    features::{ANTIALIAS, COLOURED, OBJECTS, REDRAW},
+    features::{ANTIALIAS, COLOURED, OBJECTS, REDRAW, TRANSPARENCY},
     frame::skips::Skips,
     geometry::{
         depth_elision::DepthElision,
@@ -103,7 +103,7 @@ pub(crate) struct PlacedMesh<'r> {
     pub(crate) placement: &'r Placement,
     /// Index of its material.
     pub(crate) material: usize,
-    /// Triangles of the frame before its own.
+    /// Number of its first triangle in the frame.
     pub(crate) first_triangle: u32,
     /// Vertices of the frame before its own.
     pub(crate) first_vertex: usize,
@@ -117,23 +117,29 @@ impl<'r> PlacedMesh<'r> {
 
     /// `mesh` of `object`, whose first mesh in the stream is `first`.
     fn new(placement: &'r Placement, object: &Object, first: &Mesh, mesh: &'r Mesh) -> Self {
+        let of_object = placement.first_number(object, TRANSPARENCY && mesh.is_transparent());
         Self {
             mesh,
             placement,
             material: object.material_of(mesh),
-            first_triangle: placement.first_triangle.wrapping_add(mesh.first_triangle.wrapping_sub(first.first_triangle)),
+            first_triangle: of_object.wrapping_add(mesh.first_triangle.wrapping_sub(first.first_triangle)),
             first_vertex: placement.first_vertex.wrapping_add(mesh.first_vertex.wrapping_sub(first.first_vertex)) as usize,
         }
     }
 }
 
-/// The meshes of all objects of a scene, each at the level that is drawn.
+/// The meshes of all objects of a scene, each at the level that is drawn, in the order of drawing: transparent ones after all others, the farthest
+/// object first.
 pub(crate) fn meshes<'r>(scene: &'r Scene<'_>, placements: Placements<'r>) -> impl DoubleEndedIterator<Item = PlacedMesh<'r>> {
-    placements.objects(scene).flat_map(move |(placement, object)| {
+    let of_object = move |(placement, object): (&'r Placement, &'r Object)| {
         let first = scene.stream.meshes.get(usize::from(object.meshes().start));
         let placed = move |mesh| Some(PlacedMesh::new(placement, object, first?, mesh));
         placement.meshes(scene, object).filter_map(placed)
-    })
+    };
+    let transparent = move |is_wanted: bool| move |placed: &PlacedMesh<'r>| !TRANSPARENCY || placed.mesh.is_transparent() == is_wanted;
+    let opaque = placements.objects(scene).flat_map(of_object).filter(transparent(false));
+    let behind = if TRANSPARENCY { Some(placements.objects(scene).rev().flat_map(of_object).filter(transparent(true))) } else { None };
+    opaque.chain(behind.into_iter().flatten())
 }
 
 impl<'r> Context<'r> {
@@ -152,11 +158,11 @@ impl<'r> Context<'r> {
 
     /// The mesh of triangle `id` of the frame.
     pub(crate) fn mesh(&self, id: u32) -> Option<PlacedMesh<'r>> {
-        let (placement, object) = self.placements.with_triangle(self.scene, id)?;
+        let (placement, object, first_number) = self.placements.with_triangle(self.scene, id)?;
         // As objects, meshes in the stream follow one another without a gap. There may be 65,535 of them: they are searched by halves.
         let meshes = self.scene.stream.meshes;
         let first = meshes.get(usize::from(object.meshes().start))?;
-        let id = id.wrapping_sub(placement.first_triangle).wrapping_add(first.first_triangle);
+        let id = id.wrapping_sub(first_number).wrapping_add(first.first_triangle);
         let mesh = meshes.get(meshes.partition_point(|mesh| mesh.first_triangle <= id).wrapping_sub(1))?;
         Some(PlacedMesh::new(placement, object, first, mesh))
     }

@@ -361,7 +361,8 @@ impl<'r> FrameRows<'r> {
         }
         let active = ActiveTriangles::new(self.active_triangles, self.queue);
         let depth = self.depth.get_mut(from..from + count).unwrap_or_default();
-        let mut band = Band { pixels, depth, width, top: top as i32, rows: rows as i32, active, counts: Counts::default() };
+        let mut band =
+            Band { pixels, depth, width, top: top as i32, rows: rows as i32, active, counts: Counts::default(), sheet: Default::default() };
         band.clear(self.rows.clone());
         // Decision: lists.
         let (pixels, drawn) = if self.binned {
@@ -417,6 +418,7 @@ fn draw_binned<C: Pixel>(
             continue;
         }
         let Some((drawing, loops)) = colours.drawing(context, &placed, columns) else { break };
+        band.sheet.iter_mut().for_each(|sheet| sheet.glass = drawing.glass(placed.mesh));
         let (drawn, rest) = (loops.run)(&drawing, key, walk, band);
         pixels = pixels.saturating_add(drawn);
         next = rest;
@@ -452,6 +454,7 @@ fn draw_all<C: Pixel>(context: &Context<'_>, colours: &Colours<'_, C>, columns: 
     let (mut pixels, mut drawn) = (0u32, 0);
     for placed in context.meshes() {
         let Some((drawing, loops)) = colours.drawing(context, &placed, columns) else { continue };
+        band.sheet.iter_mut().for_each(|sheet| sheet.glass = drawing.glass(placed.mesh));
         for triangle in drawing.pass.triangles.iter().filter(|triangle| placed.placement.facing.may_face(triangle)) {
             let Some(bounds) = drawing.pass.bounds(triangle) else { continue };
             // A triangle is counted in the band where it starts.

@@ -121,4 +121,16 @@ impl<P: Patch> Walker for AtColumn<P> {
             self.walker.value()
         }
     }
+
+    const HAS_HOLES: bool = P::Walker::HAS_HOLES;
+
+    #[inline(always)]
+    fn may_have_holes(&self) -> bool {
+        self.walker.may_have_holes()
+    }
+
+    #[inline(always)]
+    fn covers(&self) -> bool {
+        if EVALUATES { self.patch.enter(black_box(self.x)).covers() } else { self.walker.covers() }
+    }
 }

@@ -77,7 +77,7 @@ pub(crate) fn each_channel<const CH: usize>(mut f: impl FnMut(usize)) {
 }
 
 /// Runs along a span from right to left.
-pub trait Walker {
+pub trait Walker: Clone {
     /// The value at a pixel.
     type Value;
 
@@ -86,6 +86,21 @@ pub trait Walker {
 
     /// The value at the current pixel.
     fn value(&self) -> Self::Value;
+
+    /// Whether a pixel may be a hole, so that [`Self::covers`] has to be asked.
+    const HAS_HOLES: bool = false;
+
+    /// Whether this surface may have a hole.
+    #[inline(always)]
+    fn may_have_holes(&self) -> bool {
+        Self::HAS_HOLES
+    }
+
+    /// Whether the surface covers the current pixel: false if it has a hole there.
+    #[inline(always)]
+    fn covers(&self) -> bool {
+        true
+    }
 }
 
 /// A polynomial without a value, for methods that interpolate nothing.
@@ -168,6 +183,18 @@ impl<A: Walker, B: Walker> Walker for (A, B) {
     #[inline(always)]
     fn value(&self) -> Self::Value {
         (self.0.value(), self.1.value())
+    }
+
+    const HAS_HOLES: bool = A::HAS_HOLES || B::HAS_HOLES;
+
+    #[inline(always)]
+    fn may_have_holes(&self) -> bool {
+        self.0.may_have_holes() || self.1.may_have_holes()
+    }
+
+    #[inline(always)]
+    fn covers(&self) -> bool {
+        self.0.covers() && self.1.covers()
     }
 }
 

@@ -169,7 +169,7 @@ mod tests {
     use super::*;
     use proptest::prelude::*;
 
-    const WHITE: Colour = Colour { channels: [255; 3], unused: 0 };
+    const WHITE: Colour = Colour::new([255; 3]);
 
     proptest! {
         #[test]
@@ -177,8 +177,8 @@ mod tests {
             let parts = Parts { diffuse: levels, specular };
             let white = Albedo::new(WHITE, false).lit(parts);
             prop_assert_eq!(white, zip(levels, specular, |a, b| (a + b).min(FULL)));
-            let lit = Albedo::new(Colour { channels, unused: 0 }, false).lit(parts);
-            prop_assert_eq!(lit, Albedo::new(Colour { channels, unused: 0 }, false).lit_vertex(parts.packed()));
+            let lit = Albedo::new(Colour::new(channels), false).lit(parts);
+            prop_assert_eq!(lit, Albedo::new(Colour::new(channels), false).lit_vertex(parts.packed()));
             for k in 0..3 {
                 let exact = f64::from(levels[k]) * f64::from(channels[k]) / 255.0 + f64::from(specular[k]);
                 prop_assert!((f64::from(lit[k]) - exact.min(f64::from(FULL))).abs() <= 1.0);
@@ -188,7 +188,7 @@ mod tests {
 
     #[test]
     fn greys_have_the_luma_of_a_colour() {
-        let gray = |channels| Albedo::new(Colour { channels, unused: 0 }, true).shares();
+        let gray = |channels| Albedo::new(Colour::new(channels), true).shares();
         assert_eq!(gray([255; 3]), [65_535; 3]);
         assert_eq!(gray([255, 0, 0]), [(77 * 255 * 257) >> 8; 3]);
     }

@@ -1,7 +1,7 @@
 //! Textures at a pixel: the nearest texel, and its colour.
 
 use crate::{
-    features::TEXTURED,
+    features::{TEXTURED, TRANSPARENCY},
     format::{COSINE, TEXTURE},
     lighting::albedo::Albedo,
     stream::{
@@ -31,6 +31,8 @@ pub struct Sampler<'f> {
     /// The binary logarithms of width and height.
     size: [u8; 2],
     is_gray: bool,
+    /// Whether it may have holes.
+    pub(crate) has_holes: bool,
 }
 
 /// Where in a walked place the number of a column or of a row stands.
@@ -64,13 +66,14 @@ pub(crate) struct Textured<'f> {
 
 impl<'f> Sampler<'f> {
     /// The texture of a mesh, and where its triangles lie in it. Pixel formats of greys take the luma of its colours.
-    pub(crate) fn new(MeshTexture { palette, texels, size, corners }: MeshTexture<'f>, is_gray: bool) -> (Self, &'f [TextureCorners]) {
-        (Self::of(palette, texels, size, is_gray), corners)
+    pub(crate) fn new(texture: MeshTexture<'f>, is_gray: bool) -> (Self, &'f [TextureCorners]) {
+        let MeshTexture { palette, texels, size, has_holes, corners } = texture;
+        (Self { has_holes, ..Self::of(palette, texels, size, is_gray) }, corners)
     }
 
     fn of(palette: &'f [Colour], texels: &'f [u8], size: [u8; 2], is_gray: bool) -> Self {
         let [width, height] = size;
-        Self { palette, texels, column: Digits::new(width, 0), row: Digits::new(height, width), size, is_gray }
+        Self { palette, texels, column: Digits::new(width, 0), row: Digits::new(height, width), size, is_gray, has_holes: false }
     }
 
     /// The colour of the texel at a walked place, which is rounded down to whole texels.
@@ -79,7 +82,13 @@ impl<'f> Sampler<'f> {
         let texel = (self.row.of(v) | self.column.of(u)) as usize;
         // A checked stream has all texels, and all of their colours.
         let colour = self.texels.get(texel).and_then(|&index| self.palette.get(usize::from(index)));
-        *colour.unwrap_or(&Colour { channels: [0; 3], unused: 0 })
+        *colour.unwrap_or(&Colour::new([0; 3]))
+    }
+
+    /// Whether the texture has no hole at a walked place.
+    #[inline(always)]
+    pub(crate) fn covers(&self, place: [u32; 2]) -> bool {
+        !TRANSPARENCY || self.texel(place).hole == 0
     }
 
     /// The colour at a walked place, as that of a surface.
@@ -107,7 +116,7 @@ mod tests {
 
     #[test]
     fn texels_are_found_by_rows_and_repeat() {
-        let palette = core::array::from_fn(|k| Colour { channels: [k as u8; 3], unused: 0 });
+        let palette = core::array::from_fn(|k| Colour::new([k as u8; 3]));
         let at = |u: f64, v: f64| {
             let place = [u, v].map(|c| (c * f64::from(1u32 << WALKED)) as i64 as u32);
             let [share, ..] = texture(&palette).at(place).shares();
@@ -119,7 +128,7 @@ mod tests {
 
     #[test]
     fn ranges_are_in_eighths_of_texels() {
-        let palette = [Colour { channels: [0; 3], unused: 0 }; 8];
+        let palette = [Colour::new([0; 3]); 8];
         assert_eq!(texture(&palette).range(&[[0, 0], [1 << 12, 0], [0, 1 << 11]]), 17);
         assert_eq!(texture(&palette).range(&[[0; 2], [0, 0xFFFF], [0; 2]]), 512);
     }

@@ -13,10 +13,11 @@ use crate::{
     raster::{
         band::Band,
         canvas::{BandCanvas, Colourist},
+        glass::Glass,
         triangle::{ScreenTriangle, turned},
     },
     setup::gradients::Gradients,
-    stream::record::Triangle,
+    stream::record::{Mesh, Triangle},
 };
 pub(crate) use {painting::Painting, pass::MeshPass};
 
@@ -33,6 +34,12 @@ pub(crate) struct Drawing<'f, C: Pixel> {
 impl<C: Pixel> Drawing<'_, C> {
     fn tables(&self) -> MaterialTables<'_, C> {
         MaterialTables { ramps: self.ramps, reflectance: &self.pass.shading.reflectance }
+    }
+
+    /// How the surface of `mesh` lets through what is behind it.
+    #[inline(always)]
+    pub(crate) fn glass(&self, mesh: &Mesh) -> Option<Glass> {
+        mesh.is_transparent().then(|| Glass::new(mesh.transparency(), self.gamma))
     }
 
     /// What makes pixels of intensities.

@@ -1,14 +1,13 @@
 //! Lighting models: how interpolated fields become reflected light at a pixel.
 
 use crate::{
-    features::{COLOURED, PERSPECTIVE, TEXTURES, VERTEX_COLOURS},
+    features::{COLOURED, PERSPECTIVE, TEXTURES, TRANSPARENCY, VERTEX_COLOURS},
     format::{COSINE, MAX_LIGHTS},
     interpolate::{Constant, Patch, Walker, field::Field, perspective::PerspectivePatch},
     lighting::{
         albedo::{Albedo, IfColoured},
         lights::{SHAPES, Source, cosine},
         reflectance::{Factors, LitMaterial, Reflection},
-        sampler::Sampler,
     },
     math::{
         highlight_lut::{CosineLookup, HighlightLut},
@@ -18,10 +17,10 @@ use crate::{
         Shading, TriangleSetup,
         node::{Node, map_six},
         products::{LinearNodes, QuadraticNodes, fitted, linear, quadratic, signed},
-        texture::PlacePatch,
+        texture::{PlacePatch, Placed},
         weakening::{Change, Way},
     },
-    raster::canvas::{CHUNK, Canvas, SpanShader, SpanTarget},
+    raster::canvas::{CHUNK, Canvas, SpanShader, SpanTarget, covered},
 };
 
 /// Computes the light at a pixel from interpolated fields: `V` for each light, `D` for a light without a highlight, and `K` once for all lights.
@@ -66,10 +65,18 @@ enum Painter<'a, W> {
     /// Its corners: the shares of red and green, then that of blue and nothing, Q2.30.
     Corners([W; 2]),
     /// A texture.
-    Texture(&'a Sampler<'a>, PlacePatch),
+    Texture(Placed<'a, PlacePatch>),
 }
 
 impl<W: Patch<Walker: Walker<Value = [u32; 2]>>> Coloured<'_, W> {
+    /// The pixels of a run in which the surface has no hole, see [`covered`].
+    fn covered(&self, run: usize, [rows, x]: [i32; 2]) -> u32 {
+        match &self.painter {
+            Painter::Texture(place) if TEXTURES && TRANSPARENCY => covered(&enter(place, rows, x), run),
+            _ => u32::MAX,
+        }
+    }
+
     /// Multiplies the sums of ambient and diffuse light of the `visible` ones of `run` pixels by the colour, and adds highlights. The runs lie `rows` rows
     /// below the current one, left of the column `x`.
     fn paint(&mut self, levels: &mut [[i32; 3]; CHUNK], run: usize, visible: u32, [rows, x]: [i32; 2]) {
@@ -87,8 +94,8 @@ impl<W: Patch<Walker: Walker<Value = [u32; 2]>>> Coloured<'_, W> {
                     reflect(sums, highlights, map([red, green, blue], share));
                 }
             }
-            Painter::Texture(sampler, place) if TEXTURES => {
-                let mut walker = enter(place, rows, x);
+            Painter::Texture(place) if TEXTURES => {
+                let (mut walker, sampler) = (enter(place, rows, x), place.sampler);
                 let mut bit = 1 << run;
                 for (sums, highlights) in light {
                     walker.step();
@@ -181,7 +188,8 @@ where
             // The column that the walkers of the run enter.
             let entry = end.wrapping_sub((count - first) as i32);
             first -= run;
-            let visible = target.visible(first, run);
+            let covered = colour.as_deref().map_or(u32::MAX, |colour| colour.covered(run, [rows, entry]));
+            let visible = target.visible(first, run, covered);
             // Counted down, and the index cut off: no bounds are left to check.
             let mut k = run;
             while k > 0 {
@@ -279,9 +287,9 @@ impl<'a, 's, K, P, D, W, F, S> ManyLights<'a, 's, K, P, D, W, F, S> {
     }
 
     /// The place in a texture, if there is one.
-    fn place(&mut self) -> Option<&mut PlacePatch> {
+    fn place(&mut self) -> Option<&mut Placed<'a, PlacePatch>> {
         match self.colour.first_mut()? {
-            Some(Coloured { painter: Painter::Texture(_, place), .. }) if TEXTURES => Some(place),
+            Some(Coloured { painter: Painter::Texture(place), .. }) if TEXTURES => Some(place),
             _ => None,
         }
     }
@@ -415,7 +423,7 @@ impl Shading<'_> {
         let mut rooms = room.iter_mut();
         let colour = setup.albedos.map(|albedos| {
             let painter = match setup.texture_patch().first().copied().flatten() {
-                Some((sampler, place)) => Painter::Texture(sampler, place),
+                Some(place) => Painter::Texture(place),
                 None => Painter::Corners(ways(&setup.colours_at_nodes(albedos?)).map(&walked)),
             };
             Some(Coloured { painter, dark, highlights: rooms.next()? })

@@ -86,7 +86,7 @@ pub use {
     lighting_model::{LightingModel, Lit},
     node::Node,
     products::{LinearNodes, QuadraticNodes, linear, quadratic, signed},
-    texture::{OnTexture, PlacePatch},
+    texture::{OnTexture, PlacePatch, Placed},
 };
 
 /// A shading method: it computes the light of the pixels of a triangle. Implement it for a method of your own, and wrap it

@@ -9,7 +9,7 @@
 //! has loops for colours that change from pixel to pixel. All else goes through the general loop.
 
 use crate::{
-    features::{PERSPECTIVE, TEXTURES},
+    features::{PERSPECTIVE, TEXTURES, TRANSPARENCY},
     format::{BIAS, CHANNEL, FULL, INTENSITY, Intensity, LEVEL, WALK},
     interpolate::{
         Patch, Walker,
@@ -77,10 +77,10 @@ impl TriangleSetup<'_> {
     #[doc(hidden)]
     #[inline]
     #[must_use]
-    pub fn texture_patch(&self) -> IfTextured<Option<(&Sampler<'_>, PlacePatch)>> {
+    pub fn texture_patch(&self) -> IfTextured<Option<Placed<'_, PlacePatch>>> {
         self.texture.each_ref().map(|texture| {
             let texture = texture.as_ref()?;
-            Some((texture.sampler, self.place_patch(texture)))
+            Some(Placed { place: self.place_patch(texture), sampler: texture.sampler })
         })
     }
 
@@ -102,11 +102,17 @@ impl TriangleSetup<'_> {
         perspective::linear_way(self.corners.map(|corner| corner.depth), sampler.range(places), MOST)
     }
 
-    /// The colours of the texture over the triangle; `None` if it has none, or a quadratic is too far off for the place.
+    /// Whether the texture of the triangle may have holes.
+    #[inline(always)]
+    pub(crate) fn has_holes(&self) -> bool {
+        TRANSPARENCY && self.texture.iter().flatten().any(|texture| texture.sampler.has_holes)
+    }
+
+    /// The colours of the texture over the triangle, with `HOLES` or none; `None` if it has none, or a quadratic is too far off for the place.
     #[inline(never)]
-    pub(crate) fn sampled(&self) -> Option<Sampled<'_, ByColumn<Quadric<2>>>> {
+    pub(crate) fn sampled<const HOLES: bool>(&self) -> Option<Sampled<Placed<'_, ByColumn<Quadric<2>>, HOLES>>> {
         let texture = self.texture.first()?.as_ref()?;
-        Some(Sampled { place: ByColumn(self.place_on_screen(texture)?), sampler: texture.sampler })
+        Some(Sampled(Placed { place: ByColumn(self.place_on_screen(texture)?), sampler: texture.sampler }))
     }
 
     /// The place in a texture as a quadratic on the screen; `None` if it would be too far off.
@@ -124,8 +130,8 @@ impl TriangleSetup<'_> {
     where
         for<'s> OnTexture<'s, S>: IntensityShader<(F::Value, [u32; 2])>,
     {
-        let (sampler, place) = self.texture_patch().first().copied()??;
-        let shader = OnTexture { sampler, shader };
+        let place = self.texture_patch().first().copied()??;
+        let shader = OnTexture { sampler: place.sampler, shader };
         if PERSPECTIVE && let Some(inv_depth) = self.inv_depth() {
             let patch = PerspectivePatch::new(self.gradients, inv_depth, field.surface());
             return Some(self.draw_spans(&mut Shaded::new((patch, place), shader), canvas));
@@ -223,14 +229,43 @@ pub(crate) fn fill<C: Pixel>(
     let is_matt = highlights == [[0; 3]; 3];
     // The sum at a pixel is less than 512.
     let most = if is_matt { 510 } else { 257 } << LEVEL >> QUARTER;
-    let is_bright = light.as_flattened().iter().any(|&quarter| quarter >= most) || highlights.as_flattened().iter().any(|&level| level > FULL);
+    let is_bright =
+        light.as_flattened().iter().any(|&quarter| quarter >= most) || highlights.as_flattened().iter().any(|&level| level > FULL);
     if C::GRAY || is_bright || !matches!(setup.linear_way(range), LinearWay::Plane) {
         return None;
     }
+    let levels = Levels { light, highlights, is_matt };
+    // Where a texture has no holes, no pixel asks for them.
+    if setup.has_holes() {
+        fill_placed::<C, TRANSPARENCY>(setup, texture, shading, way, &levels, band)
+    } else {
+        fill_placed::<C, false>(setup, texture, shading, way, &levels, band)
+    }
+}
+
+/// The levels at the corners of a triangle: scaled quarters of ambient and diffuse light, and highlights.
+struct Levels {
+    light: [[i32; 3]; 3],
+    highlights: [[i32; 3]; 3],
+    /// There are no highlights.
+    is_matt: bool,
+}
+
+/// Draws a triangle with a texture that has `HOLES`, or none. `None` if a quadratic is too far off for the place.
+#[inline(always)]
+fn fill_placed<C: Pixel, const HOLES: bool>(
+    setup: &TriangleSetup<'_>,
+    texture: &Textured<'_>,
+    shading: &Shading<'_>,
+    way: LinearWay,
+    &Levels { light, highlights, is_matt }: &Levels,
+    band: &mut Band<'_, C>,
+) -> Option<u32> {
+    let sampler = texture.sampler;
     let fit = |levels| Nodes::<3, 3, RANGE>::new(channels(levels), CHANNEL - LEVEL).fit(setup.gradients);
-    let plane = || fitted(&linear(corner_nodes(texture)), setup.gradients);
-    let quadric = |shares| ByColumn(fitted(&place_nodes(texture, shares), setup.gradients));
-    let pixels = Texels::<C>::new(texture.sampler, shading.reflectance.quarter());
+    let plane = || Placed::<_, HOLES> { place: fitted(&linear(corner_nodes(texture)), setup.gradients), sampler };
+    let quadric = |shares| Placed::<_, HOLES> { place: ByColumn(fitted(&place_nodes(texture, shares), setup.gradients)), sampler };
+    let pixels = Texels::<C>::new(sampler, shading.reflectance.quarter());
     Some(match (way, is_matt) {
         (LinearWay::InSpace, _) => return None,
         (LinearWay::Plane, true) => setup.fill(|| (fit(light), plane()), pixels, band),
@@ -302,23 +337,17 @@ impl<C: Pixel> PixelShader<(([u32; 3], [u32; 3]), [u32; 2])> for Texels<'_, C> {
     }
 }
 
-/// The colours of a texture at the places of a polynomial: shares of red, green and blue, Q1.[`COLOUR`]. Methods that interpolate such shares between
-/// corners draw textures by the same loops.
+/// The place in a texture, by a polynomial. Where the texture has a hole, the surface covers no pixel.
 #[derive(Clone, Copy, Debug)]
-pub(crate) struct Sampled<'f, P> {
-    place: P,
-    sampler: &'f Sampler<'f>,
+pub struct Placed<'f, P, const HOLES: bool = TRANSPARENCY> {
+    /// The place.
+    pub place: P,
+    /// The texture.
+    pub sampler: &'f Sampler<'f>,
 }
 
-/// Walks a [`Sampled`].
-#[derive(Clone, Copy, Debug)]
-pub(crate) struct SampledWalker<'f, W> {
-    place: W,
-    sampler: &'f Sampler<'f>,
-}
-
-impl<'f, P: Patch<Walker: Walker<Value = [u32; 2]>>> Patch for Sampled<'f, P> {
-    type Walker = SampledWalker<'f, P::Walker>;
+impl<'f, P: Patch<Walker: Walker<Value = [u32; 2]>>, const HOLES: bool> Patch for Placed<'f, P, HOLES> {
+    type Walker = Placed<'f, P::Walker, HOLES>;
 
     #[inline(always)]
     fn jump(&mut self, rows: i32) {
@@ -332,15 +361,15 @@ impl<'f, P: Patch<Walker: Walker<Value = [u32; 2]>>> Patch for Sampled<'f, P> {
 
     #[inline(always)]
     fn enter(&self, x: i32) -> Self::Walker {
-        SampledWalker { place: self.place.enter(x), sampler: self.sampler }
+        Placed { place: self.place.enter(x), sampler: self.sampler }
     }
 
     /// More than there is room for.
     const WORDS: usize = 1 << 8;
 }
 
-impl<W: Walker<Value = [u32; 2]>> Walker for SampledWalker<'_, W> {
-    type Value = [u32; 3];
+impl<W: Walker<Value = [u32; 2]>, const HOLES: bool> Walker for Placed<'_, W, HOLES> {
+    type Value = [u32; 2];
 
     #[inline(always)]
     fn step(&mut self) {
@@ -348,11 +377,71 @@ impl<W: Walker<Value = [u32; 2]>> Walker for SampledWalker<'_, W> {
     }
 
     #[inline(always)]
+    fn value(&self) -> [u32; 2] {
+        self.place.value()
+    }
+
+    const HAS_HOLES: bool = HOLES;
+
+    #[inline(always)]
+    fn may_have_holes(&self) -> bool {
+        HOLES && self.sampler.has_holes
+    }
+
+    #[inline(always)]
+    fn covers(&self) -> bool {
+        self.sampler.covers(self.place.value())
+    }
+}
+
+/// The colours of a texture: shares of red, green and blue, Q1.[`COLOUR`]. Methods that interpolate such shares between corners draw textures by the same
+/// loops.
+#[derive(Clone, Copy, Debug)]
+pub(crate) struct Sampled<P>(P);
+
+impl<'f, P: Patch<Walker: Walker<Value = [u32; 2]>>, const HOLES: bool> Patch for Sampled<Placed<'f, P, HOLES>> {
+    type Walker = Sampled<Placed<'f, P::Walker, HOLES>>;
+
+    #[inline(always)]
+    fn jump(&mut self, rows: i32) {
+        self.0.jump(rows);
+    }
+
+    #[inline(always)]
+    fn step_row(&mut self) {
+        self.0.step_row();
+    }
+
+    #[inline(always)]
+    fn enter(&self, x: i32) -> Self::Walker {
+        Sampled(self.0.enter(x))
+    }
+
+    /// More than there is room for.
+    const WORDS: usize = 1 << 8;
+}
+
+impl<W: Walker<Value = [u32; 2]>, const HOLES: bool> Walker for Sampled<Placed<'_, W, HOLES>> {
+    type Value = [u32; 3];
+
+    #[inline(always)]
+    fn step(&mut self) {
+        self.0.step();
+    }
+
+    #[inline(always)]
     fn value(&self) -> [u32; 3] {
-        let Colour { channels: [r, g, b], .. } = self.sampler.texel(self.place.value());
+        let Colour { channels: [r, g, b], .. } = self.0.sampler.texel(self.0.value());
         // From 255 to 65,535 of 65,536.
         let share = |channel: u8| u32::from(channel) * (257 << (COLOUR - SHARE));
         [share(r), share(g), share(b)]
+    }
+
+    const HAS_HOLES: bool = HOLES;
+
+    #[inline(always)]
+    fn covers(&self) -> bool {
+        self.0.covers()
     }
 }
 

@@ -103,7 +103,7 @@ pub trait Pixel: PixelFormat {
         [packed(r, odd_g, b), packed(odd_r, g, odd_b)]
     }
 
-    /// Mixes the pixel with `share / 128` of `other`; for antialiasing. A pixel of light needs the curve of the display for it.
+    /// Mixes the pixel with `share / 128` of `other`; for antialiasing and transparent surfaces. A pixel of light needs the curve of the display for it.
     #[doc(hidden)]
     fn mixed_with(self, other: Self, share: u32, _: Option<&'static Gamma>) -> Self {
         let mixed = |own: u8, other: u8| ((u32::from(own) * (128 - share) + u32::from(other) * share + 64) >> 7) as u8;

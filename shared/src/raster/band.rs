@@ -2,7 +2,11 @@
 
 use crate::{
     pixel::Pixel,
-    raster::{active::ActiveTriangles, counts::Counts},
+    raster::{
+        active::ActiveTriangles,
+        counts::Counts,
+        glass::{IfTransparent, Sheet},
+    },
 };
 use core::{hint::black_box, ops::Range};
 use zerocopy::{FromBytes, IntoBytes};
@@ -24,6 +28,8 @@ pub struct Band<'a, C> {
     pub active: ActiveTriangles<'a>,
     /// Counts of what was drawn.
     pub counts: Counts,
+    /// How the surface that is drawn lets through what is behind it.
+    pub sheet: IfTransparent<Sheet<C>>,
 }
 
 impl<C> Band<'_, C> {

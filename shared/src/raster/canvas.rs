@@ -7,6 +7,7 @@
 //! Cost: several times as much as a method's own loop if the method takes few instructions a pixel, and little more if it takes a hundred.
 
 use crate::{
+    features::TRANSPARENCY,
     format::{BIAS, INTENSITY, Intensity, RAMP},
     interpolate::{Patch, Walker, plane::LinearWalker},
     lighting::material_tables::MaterialTables,
@@ -16,7 +17,11 @@ use crate::{
         gamma::Gamma,
         ramps::Ramps,
     },
-    raster::{band::Band, counts::Counts},
+    raster::{
+        band::Band,
+        counts::Counts,
+        glass::{Glass, IfTransparent},
+    },
 };
 
 /// Number of pixels that are shaded at once.
@@ -38,11 +43,24 @@ pub trait SpanShader {
 /// Receives the pixels of a span, in runs from right to left.
 pub trait SpanTarget {
     /// Tests the depth of `count` pixels, at most [`CHUNK`], from number `first` of the span on. Bit k of the result is 1 if pixel `first + k`
-    /// passes.
-    fn visible(&mut self, first: usize, count: usize) -> u32;
+    /// passes and is [`covered`].
+    fn visible(&mut self, first: usize, count: usize, covered: u32) -> u32;
 
     /// Stores the intensities of `visible` pixels from number `first` on, as [`Self::visible`] has returned them.
     fn put(&mut self, first: usize, visible: u32, intensities: &[Intensity; CHUNK]);
+}
+
+/// The pixels of a run in which the surface has no hole: bit k is 1 if it covers pixel k. `walker` stands right of the last of `count` pixels.
+#[inline(always)]
+pub fn covered<W: Walker>(walker: &W, count: usize) -> u32 {
+    if !(W::HAS_HOLES && walker.may_have_holes()) {
+        return u32::MAX;
+    }
+    let mut walker = walker.clone();
+    (0..count).fold(0, |covered, _| {
+        walker.step();
+        covered << 1 | u32::from(walker.covers())
+    })
 }
 
 /// Converts an interpolated value to light at a pixel. Implement it for a shading method of your own; `V` is the type of the value, for
@@ -84,7 +102,7 @@ impl<P: Patch, S: IntensityShader<<P::Walker as Walker>::Value>> SpanShader for 
         while first > 0 {
             let run = first.min(CHUNK);
             first -= run;
-            let visible = target.visible(first, run);
+            let visible = target.visible(first, run, covered(&walker, run));
             // Counted down, and the index cut off: no bounds are left to check.
             let mut k = run;
             while k > 0 {
@@ -185,7 +203,8 @@ impl<C: Pixel> Canvas for BandCanvas<'_, '_, C> {
         let stop = self.band.start(row).wrapping_add(end as usize);
         let start = stop.wrapping_sub(count);
         if let (Some(pixels), Some(depth)) = (self.band.pixels.get_mut(start..stop), self.band.depth.get_mut(start..stop)) {
-            let mut target = CanvasRow { pixels, depth, inv_depth, colourist: self.colourist, row: row as usize };
+            let glass = self.band.sheet.each_ref().map(|sheet| sheet.glass);
+            let mut target = CanvasRow { pixels, depth, inv_depth, colourist: self.colourist, row: row as usize, glass };
             shader.span(0, end, count, &mut target);
         }
     }
@@ -199,19 +218,28 @@ struct CanvasRow<'r, C: Pixel> {
     inv_depth: LinearWalker<1>,
     colourist: &'r Colourist<'r, C>,
     row: usize,
+    /// How the surface lets through what is behind it.
+    glass: IfTransparent<Option<Glass>>,
 }
 
 impl<C: Pixel> SpanTarget for CanvasRow<'_, C> {
-    fn visible(&mut self, first: usize, count: usize) -> u32 {
-        let mut visible = 0;
+    fn visible(&mut self, first: usize, count: usize, mut covered: u32) -> u32 {
+        covered <<= 32 - count.min(CHUNK);
+        let (mut visible, is_opaque) = (0, self.glass.first().is_none_or(Option::is_none));
         let depth = self.depth.get_mut(first..first.wrapping_add(count)).unwrap_or_default();
         for depth in depth.iter_mut().rev() {
             self.inv_depth.step();
             let [inv_depth] = self.inv_depth.value();
             let inv_depth = (inv_depth >> 16) as u16;
             visible <<= 1;
-            if inv_depth > *depth {
-                *depth = inv_depth;
+            // Its bit is the highest one that is left.
+            let is_covered = !TRANSPARENCY || covered >> 31 != 0;
+            covered <<= 1;
+            if inv_depth > *depth && is_covered {
+                // A transparent surface hides nothing.
+                if is_opaque {
+                    *depth = inv_depth;
+                }
                 visible |= 1;
             }
         }
@@ -220,29 +248,36 @@ impl<C: Pixel> SpanTarget for CanvasRow<'_, C> {
 
     fn put(&mut self, first: usize, visible: u32, intensities: &[Intensity; CHUNK]) {
         let (colourist, reflectance) = (self.colourist, &self.colourist.tables.reflectance);
-        let (pixels, row) = (self.pixels.get_mut(first..).unwrap_or_default(), self.row);
+        let (pixels, row, glass) = (self.pixels.get_mut(first..).unwrap_or_default(), self.row, self.glass.first().copied().flatten());
         // One loop for each way to make a colour, so that no pixel has to ask.
         if colourist.corrects {
             let threshold = colourist.threshold(row);
-            put_each(pixels, visible, intensities, |intensity| {
+            put_each(pixels, visible, intensities, glass, |intensity| {
                 C::mixed_from(C::quantised_to_mix(reflectance.scaled(intensity, colourist.gamma), threshold))
             });
         } else if reflectance.three_channels() {
             let threshold = colourist.threshold(row);
-            put_each(pixels, visible, intensities, |intensity| C::quantised(intensity, threshold));
+            put_each(pixels, visible, intensities, glass, |intensity| C::quantised(intensity, threshold));
         } else {
             let ramp = colourist.tables.ramps.squares()[row % 2];
-            put_each(pixels, visible, intensities, |intensity| Colourist::by_table(ramp, intensity));
+            put_each(pixels, visible, intensities, glass, |intensity| Colourist::by_table(ramp, intensity));
         }
     }
 }
 
 /// Stores the colours of the intensities that are `visible`, counted from the first of `pixels`.
 #[inline(always)]
-fn put_each<C>(pixels: &mut [C], mut visible: u32, intensities: &[Intensity; CHUNK], colour: impl Fn(Intensity) -> C) {
+fn put_each<C: Pixel>(
+    pixels: &mut [C],
+    mut visible: u32,
+    intensities: &[Intensity; CHUNK],
+    glass: Option<Glass>,
+    colour: impl Fn(Intensity) -> C,
+) {
     for (pixel, &intensity) in pixels.iter_mut().zip(intensities) {
         if visible & 1 != 0 {
-            *pixel = colour(intensity);
+            let surface = colour(intensity);
+            *pixel = glass.map_or(surface, |glass| glass.over(surface, *pixel));
         }
         visible >>= 1;
         if visible == 0 {

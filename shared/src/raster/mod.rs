@@ -5,6 +5,7 @@ pub(crate) mod background;
 pub mod band;
 pub mod canvas;
 pub mod counts;
+pub mod glass;
 mod gradient;
 pub mod pixel_shader;
 pub(crate) mod span;

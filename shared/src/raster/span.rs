@@ -11,6 +11,9 @@ pub(crate) trait DepthTest: Walker {
     /// The part of the depth buffer that the test needs for these pixels.
     fn depth(depth: &mut [u16], pixels: Range<usize>) -> Option<&mut [u16]>;
 
+    /// Whether pixel `i` of `depth` passes the test.
+    fn is_nearer(&self, depth: &[u16], i: usize) -> bool;
+
     /// Whether pixel `i` of `depth` passes the test; if so, its depth is stored.
     fn passes(&self, depth: &mut [u16], i: usize) -> bool;
 }
@@ -20,6 +23,12 @@ impl DepthTest for LinearWalker<1> {
     #[inline]
     fn depth(depth: &mut [u16], pixels: Range<usize>) -> Option<&mut [u16]> {
         depth.get_mut(pixels)
+    }
+
+    #[inline(always)]
+    fn is_nearer(&self, depth: &[u16], i: usize) -> bool {
+        let inv_depth = (self.value()[0] >> 16) as u16;
+        depth.get(i).is_some_and(|&depth| inv_depth > depth)
     }
 
     #[inline(always)]
@@ -39,6 +48,11 @@ impl DepthTest for Constant {
     #[inline]
     fn depth(_: &mut [u16], _: Range<usize>) -> Option<&mut [u16]> {
         Some(&mut [])
+    }
+
+    #[inline]
+    fn is_nearer(&self, _: &[u16], _: usize) -> bool {
+        true
     }
 
     #[inline]
@@ -69,6 +83,9 @@ pub(crate) fn fill<S: DepthTest, W: Walker, T: PixelShader<W::Value>>(
         i -= 1;
         test.step();
         walker.step();
+        if W::HAS_HOLES && !(test.is_nearer(depth, i) && walker.covers()) {
+            continue;
+        }
         if test.passes(depth, i) {
             pixels[i] = shader.shade(walker.value());
         }

@@ -2,6 +2,7 @@
 
 use crate::{
     arch::product::HALVES,
+    features::TRANSPARENCY,
     format::{DEPTH, DEPTH_NODE, DEPTH_WALK},
     geometry::projection::ScreenVertex,
     interpolate::{Constant, Patch, Walker, plane::Plane},
@@ -9,6 +10,7 @@ use crate::{
         active::{ActiveTriangle, ActiveTriangles},
         band::Band,
         canvas::{Canvas, SpanShader},
+        glass::{IfTransparent, RUN, Sheet},
         pixel_shader::PixelShader,
         span::{DepthTest, fill},
     },
@@ -18,7 +20,7 @@ use crate::{
         gradients::Gradients,
     },
 };
-use core::hint::black_box;
+use core::{hint::black_box, ops::Range};
 
 /// A triangle on the screen, its top corner first, clockwise on a screen whose y runs down.
 #[derive(Clone, Copy, Debug)]
@@ -71,6 +73,8 @@ pub(crate) struct Rows<'b, D, P: Patch, T: PixelShader<<P::Walker as Walker>::Va
     pub(crate) depth: D,
     pub(crate) patch: P,
     pub(crate) shader: T,
+    /// Room for a run of a transparent surface.
+    pub(crate) sheet: IfTransparent<&'b mut Sheet<T::Pixel>>,
 }
 
 /// All bits of the number of pixels in a row.
@@ -221,7 +225,12 @@ impl ScreenTriangle {
             if row < stop {
                 rows.height = stop.wrapping_sub(row) as u32;
                 rows.count = rows.sides.columns();
-                fill_rows(&mut rows);
+                // A transparent surface has rows of its own, so that all others take no longer.
+                if TRANSPARENCY && rows.sheet.iter().any(|sheet| sheet.glass.is_some()) {
+                    fill_rows::<_, _, _, TRANSPARENCY>(&mut rows);
+                } else {
+                    fill_rows::<_, _, _, false>(&mut rows);
+                }
             }
             if stop >= sides.end {
                 break;
@@ -295,23 +304,23 @@ fn save_active<D: Patch, P: Patch>((key, edges): (u32, EdgeState), depth: &D, pa
     active.put(|active_triangle| active_triangle.save((key, edges), depth, patch));
 }
 
-/// Fills the rows to come; there is at least one.
+/// Fills the rows to come; there is at least one. `GLASS` rows are those of a transparent surface.
 ///
 /// On Armv7-M everything that lives longer than a row stays in memory, behind one pointer that is opaque to the compiler: by measurement
 /// the pixel loop then has all registers. `count` is read from there too, written a row earlier: if it were derived in the row, the
 /// compiler would count in two registers instead of one. On other processors, or where nothing is walked, a copy on the stack takes fewer
 /// instructions.
 #[inline(never)]
-pub(crate) fn fill_rows<D: Patch<Walker: DepthTest>, P: Patch, T: PixelShader<<P::Walker as Walker>::Value>>(
+pub(crate) fn fill_rows<D: Patch<Walker: DepthTest>, P: Patch, T: PixelShader<<P::Walker as Walker>::Value>, const GLASS: bool>(
     mut rows: &mut Rows<'_, D, P, T>,
 ) {
     if Rows::<D, P, T>::LOCAL {
-        rows.fill_here();
+        rows.fill_here::<GLASS>();
         return;
     }
     loop {
         rows = black_box(rows);
-        rows.fill();
+        rows.fill::<GLASS>();
         rows.step();
         rows.height = rows.height.wrapping_sub(1);
         if rows.height == 0 {
@@ -332,12 +341,25 @@ impl<'b, D: Patch<Walker: DepthTest>, P: Patch, T: PixelShader<<P::Walker as Wal
     pub(crate) fn new(band: &'b mut Band<'_, T::Pixel>, row: i32, sides: LeftRight, depth: D, patch: P, mut shader: T) -> Self {
         let (width, start) = (band.width, band.start(row));
         shader.start_at(row);
-        Self { pixels: band.pixels, buffer: band.depth, width, start, sides, count: 0, height: 0, filled: 0, depth, patch, shader }
+        Self {
+            pixels: band.pixels,
+            buffer: band.depth,
+            width,
+            start,
+            sides,
+            count: 0,
+            height: 0,
+            filled: 0,
+            depth,
+            patch,
+            shader,
+            sheet: band.sheet.each_mut(),
+        }
     }
 
     /// Fills one row and steps the edges to the next.
     #[inline(always)]
-    fn fill(&mut self) {
+    fn fill<const GLASS: bool>(&mut self) {
         // On Armv6-M one register counts and indexes both buffers, for which the compiler has to know that twice the count does not
         // overflow.
         let count = if HALVES { self.count & ROW } else { self.count } as usize;
@@ -356,31 +378,53 @@ impl<'b, D: Patch<Walker: DepthTest>, P: Patch, T: PixelShader<<P::Walker as Wal
             && let Some(pixels) = self.pixels.get_mut(start..end)
             && let Some(buffer) = D::Walker::depth(self.buffer, start..end)
         {
-            // By measurement, loops have more registers if raised values are entered before depth, and others after it.
-            let (test, walker) = match self.shader.raise() {
-                Some(by) => {
-                    let walker = self.patch.raised(&by).enter(right as i32);
-                    (self.depth.enter(right as i32), walker)
-                }
-                None => (self.depth.enter(right as i32), self.patch.enter(right as i32)),
-            };
-            fill(pixels, buffer, test, walker, self.shader);
+            if GLASS {
+                self.fill_glass(start..end, right as i32);
+            } else {
+                // By measurement, loops have more registers if raised values are entered before depth, and others after it.
+                let (test, walker) = match self.shader.raise() {
+                    Some(by) => {
+                        let walker = self.patch.raised(&by).enter(right as i32);
+                        (self.depth.enter(right as i32), walker)
+                    }
+                    None => (self.depth.enter(right as i32), self.patch.enter(right as i32)),
+                };
+                fill(pixels, buffer, test, walker, self.shader);
+            }
             if !Self::AHEAD && late {
                 self.filled = self.filled.wrapping_add(count as u32);
             }
         }
     }
 
+    /// Fills the pixels of a row of a transparent surface, run by run. The row ends at column `right`.
+    #[inline(always)]
+    fn fill_glass(&mut self, Range { start, end }: Range<usize>, mut right: i32) {
+        let (Some(sheet), Some(mut pixels)) = (self.sheet.first_mut(), self.pixels.get_mut(start..end)) else { return };
+        let Some(depth) = D::Walker::depth(self.buffer, start..end) else { return };
+        let mut depth = &*depth;
+        while !pixels.is_empty() {
+            let before = pixels.len().saturating_sub(RUN);
+            let (pixels_before, behind) = pixels.split_at_mut(before);
+            let (depth_before, tested) = depth.split_at(before.min(depth.len()));
+            let (run, depth_of_run) = sheet.run(behind.len(), tested);
+            let patch = self.shader.raise().map_or(self.patch, |by| self.patch.raised(&by));
+            fill(run, depth_of_run, self.depth.enter(right), patch.enter(right), self.shader);
+            sheet.show(behind, tested);
+            (pixels, depth, right) = (pixels_before, depth_before, right.wrapping_sub(RUN as i32));
+        }
+    }
+
     /// Fills all rows in a local copy.
     #[inline(always)]
-    fn fill_here(&mut self) {
+    fn fill_here<const GLASS: bool>(&mut self) {
         let Rows { width, start, sides, count, height, filled, depth, patch, shader, .. } = *self;
-        let pixels = &mut *self.pixels;
+        let (pixels, sheet) = (&mut *self.pixels, self.sheet.each_mut().map(|sheet| &mut **sheet));
         // Cut to the length of the pixels, it needs no test of its own in each row. On x86-64, by measurement, that costs an instruction a
         // pixel.
         let length = if cfg!(target_arch = "arm") { pixels.len() } else { self.buffer.len() };
         let Some(buffer) = D::Walker::depth(self.buffer, 0..length) else { return };
-        let mut rows = Rows { pixels, buffer, width, start, sides, count, height, filled, depth, patch, shader };
+        let mut rows = Rows { pixels, buffer, width, start, sides, count, height, filled, depth, patch, shader, sheet };
         let ahead = |count: u32| if Self::AHEAD { count } else { 0 };
         rows.filled = rows.filled.wrapping_add(ahead(rows.count));
         loop {
@@ -388,7 +432,7 @@ impl<'b, D: Patch<Walker: DepthTest>, P: Patch, T: PixelShader<<P::Walker as Wal
             if !HALVES && cfg!(target_arch = "arm") {
                 rows.count = black_box(rows.count);
             }
-            rows.fill();
+            rows.fill::<GLASS>();
             rows.step();
             rows.filled = rows.filled.wrapping_add(ahead(rows.count));
             rows.height = rows.height.wrapping_sub(1);

@@ -121,6 +121,8 @@ pub struct MeshTexture<'a> {
     pub texels: &'a [u8],
     /// The binary logarithms of width and height.
     pub size: [u8; 2],
+    /// Whether it may have holes.
+    pub has_holes: bool,
     /// For each triangle.
     pub corners: &'a [TextureCorners],
 }
@@ -378,7 +380,8 @@ impl<'a> Stream<'a> {
                 && mesh.vertices == finer.vertices
                 && mesh.material == finer.material
                 && mesh.palette == finer.palette
-                && (mesh.flags ^ finer.flags) & HAS_TEXTURE == 0;
+                && (mesh.flags ^ finer.flags) & HAS_TEXTURE == 0
+                && mesh.transparency() == finer.transparency();
             field(!is_level || is_coarser, "mesh level", i)?;
             finer = mesh;
             next_vertex = expected.saturating_add(mesh.vertices.into());
@@ -443,10 +446,10 @@ impl<'a> Stream<'a> {
             return Ok(0);
         }
         field(mesh.flags & HAS_COLOURS == 0, "mesh colours", i)?;
-        let MeshTexture { palette, texels, .. } =
+        let MeshTexture { palette, texels, has_holes, .. } =
             self.texture_of(mesh).ok_or(StreamError::Field { name: "mesh texture", record: i as u32 })?;
-        let most = texels.iter().fold(0, |most, &texel| texel.max(most));
-        field(usize::from(most) < palette.len(), "texel of a mesh", i)?;
+        let exists = |&texel: &u8| palette.get(usize::from(texel)).is_some_and(|colour| colour.hole <= u8::from(has_holes));
+        field(texels.iter().all(exists), "texel of a mesh", i)?;
         Ok(mesh.triangles)
     }
 
@@ -564,7 +567,7 @@ impl<'a> Stream<'a> {
         }
         let TextureRecords { list, corners, texels } = self.textures();
         let (before, texture) = (list.get(..usize::from(mesh.palette))?, list.get(usize::from(mesh.palette))?);
-        let &Texture { size, palette, .. } = texture;
+        let &Texture { size, palette, has_holes } = texture;
         let first_texel = before.iter().try_fold(0, |sum: usize, texture| sum.checked_add(texture.texels()?))?;
         let texels = texels.get(first_texel..)?.get(..texture.texels()?)?;
         let palette = self.colours.get(usize::from(palette) * PALETTE..)?;
@@ -572,7 +575,12 @@ impl<'a> Stream<'a> {
         let before = |other: &&Mesh| other.first_triangle < mesh.first_triangle && other.flags & HAS_TEXTURE != 0;
         let first = self.meshes.iter().filter(before).fold(0u32, |sum, other| sum.saturating_add(other.triangles));
         let corners = corners.get(first as usize..)?.get(..mesh.triangles as usize)?;
-        Some(MeshTexture { palette, texels, size, corners })
+        Some(MeshTexture { palette, texels, size, has_holes: has_holes != 0, corners })
+    }
+
+    /// Whether a texture has holes.
+    pub(crate) fn has_holes(&self) -> bool {
+        self.textures().list.iter().any(|texture| texture.has_holes != 0)
     }
 
     /// Returns the neighbours of the triangles of `mesh`: one for each triangle, or none if the stream does not have them.
@@ -585,10 +593,10 @@ impl<'a> Stream<'a> {
 }
 
 impl Texture {
-    /// The number of its texels; `None` if it is too large.
+    /// The number of its texels; `None` if the record is wrong.
     fn texels(&self) -> Option<usize> {
         let [width, height] = self.size;
-        (width.max(height) <= LARGEST_TEXTURE).then(|| 1 << (width + height))
+        (width.max(height) <= LARGEST_TEXTURE && self.has_holes <= 1).then(|| 1 << (width + height))
     }
 }
 

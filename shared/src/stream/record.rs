@@ -19,7 +19,7 @@ compile_error!("streams are read in place and are little-endian");
 /// First four bytes of every stream.
 pub const MAGIC: [u8; 4] = *b"mTRI";
 /// Version of the format.
-pub const VERSION: u16 = 11;
+pub const VERSION: u16 = 12;
 
 /// The first record of a stream (mesh file): the camera, the background, and the number of records of each kind. Most programs only read
 /// [`Self::frames`].
@@ -250,7 +250,8 @@ pub struct Mesh {
     pub error: u16,
     /// Properties as bits. Bit 0 is 1 if the mesh is closed and convex, so that none of its front faces can hide another; the renderer then
     /// leaves out depth tests. Bit 1 is 1 if the stream has the neighbours of the mesh's triangles. Bit 2 is 1 if the corners of its triangles have
-    /// colours. Bit 3 is 1 if the mesh has a texture. The other bits are unused.
+    /// colours. Bit 3 is 1 if the mesh has a texture. The upper four bits are the transparency: the part of the light from behind that the surface
+    /// lets through, in sixteenths; 0 if nothing is seen through it.
     #[doc(hidden)]
     pub flags: u8,
     /// The first [`Colour`] of the mesh's palette, in units of [`PALETTE`] colours; the index of its [`Texture`] if it has one.
@@ -263,6 +264,20 @@ impl Mesh {
     #[inline]
     pub(crate) fn is_coloured(&self) -> bool {
         self.flags & (HAS_COLOURS | HAS_TEXTURE) != 0
+    }
+
+    /// Returns the part of the light from behind that the surface lets through, in sixteenths, 0 to 15.
+    #[inline]
+    #[must_use]
+    pub fn transparency(&self) -> u8 {
+        self.flags >> TRANSPARENCY_SHIFT
+    }
+
+    /// Whether something is seen through the surface.
+    #[inline]
+    #[must_use]
+    pub fn is_transparent(&self) -> bool {
+        self.transparency() > 0
     }
 
     /// Returns the largest distance between this level of detail and the full mesh (Hausdorff distance), in units of object space; 0 for a
@@ -289,6 +304,9 @@ pub const HAS_COLOURS: u8 = 4;
 
 /// The mesh has a [`Texture`], and the stream has [`TextureCorners`] for its triangles. Their corners have no colours of their own.
 pub const HAS_TEXTURE: u8 = 8;
+
+/// The bits of a mesh's flags below its transparency.
+pub const TRANSPARENCY_SHIFT: u32 = 4;
 
 /// Palettes begin at a multiple of this number of colours.
 pub const PALETTE: usize = 16;
@@ -528,8 +546,16 @@ pub struct Triangle {
 pub struct Colour {
     /// Red, green, blue, each 0 to 255, where 255 is all of the light.
     pub channels: [u8; 3],
-    /// Zero.
-    pub unused: u8,
+    /// 1 if a texture has a hole where it has this colour, otherwise 0.
+    pub hole: u8,
+}
+
+impl Colour {
+    /// A colour without a hole.
+    #[must_use]
+    pub const fn new(channels: [u8; 3]) -> Self {
+        Self { channels, hole: 0 }
+    }
 }
 
 /// The colours at the corners of a triangle. Between them the colour is linear.
@@ -563,8 +589,8 @@ pub struct Texture {
     pub size: [u8; 2],
     /// The first [`Colour`] of the palette, in units of [`PALETTE`] colours.
     pub palette: u8,
-    /// Zero.
-    pub unused: u8,
+    /// 1 if the texture may have holes, otherwise 0: then no colour of its palette that it uses is a [`hole`](Colour::hole).
+    pub has_holes: u8,
 }
 
 /// The binary logarithm of the largest width and height of a [`Texture`]: 256 texels.

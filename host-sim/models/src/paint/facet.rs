@@ -26,13 +26,18 @@ pub(super) struct Facet<'a> {
 impl Facet<'_> {
     /// The colour at a point, which has these shares of the corners.
     pub(super) fn at(&self, [p, q, r]: [f64; 3]) -> V3 {
-        let Some((image, [a, b, c])) = self.texture else { return mixed(&self.corners, [p, q, r]) };
-        let texel = image.at([a[0] * p + b[0] * q + c[0] * r, a[1] * p + b[1] * q + c[1] * r]);
+        let Some((image, places)) = self.texture else { return mixed(&self.corners, [p, q, r]) };
+        let texel = image.at(between(&places, [p, q, r]));
         if self.is_white {
             return texel;
         }
         let own = mixed(&self.corners, [p, q, r]);
         [own[0] * texel[0], own[1] * texel[1], own[2] * texel[2]]
+    }
+
+    /// Whether the texture has a hole at a point, which has these shares of the corners.
+    pub(super) fn is_hole_at(&self, shares: [f64; 3]) -> bool {
+        self.texture.is_some_and(|(image, places)| image.is_hole_at(between(&places, shares)))
     }
 
     /// The places of the corners in its texture as a stream has them; `None` if it has no texture, or the texture repeats itself too often.
@@ -52,6 +57,11 @@ impl Facet<'_> {
             ..*self
         }
     }
+}
+
+/// The place at a point of a triangle between its corners. It is called for many points.
+fn between([a, b, c]: &[[f64; 2]; 3], [p, q, r]: [f64; 3]) -> [f64; 2] {
+    [a[0] * p + b[0] * q + c[0] * r, a[1] * p + b[1] * q + c[1] * r]
 }
 
 /// The colour at a point of a triangle between its corners. It is called for many points.

@@ -62,6 +62,11 @@ impl Fitting {
         Self { points, inverse: [1.0 / difference, -other / (difference * (same + 2.0 * other))] }
     }
 
+    /// Whether a triangle has a hole.
+    pub(super) fn has_hole(&self, facet: &Facet<'_>) -> bool {
+        self.points.iter().any(|&shares| facet.is_hole_at(shares))
+    }
+
     /// The colours of corners that are nearest to those of a triangle.
     pub(super) fn fit(&self, facet: &Facet<'_>) -> Fit {
         if facet.texture.is_none() {

@@ -24,6 +24,8 @@ pub struct Painted {
     pub materials: usize,
     /// Number of materials whose texture is lost by colours at corners: more than 5 % of its area is farther than 24 of 255 from it.
     pub lost_materials: usize,
+    /// Number of materials whose texture has holes.
+    pub materials_with_holes: usize,
     /// The share of the area of these materials that is farther than 24 of 255 from the texture.
     pub lost_area: f64,
     /// The textures of the stream, if these materials were to have some.
@@ -58,7 +60,18 @@ impl Painted {
 
     /// Sentences for the user.
     pub(crate) fn sentences(&self) -> impl Iterator<Item = String> {
-        self.of_corners().into_iter().chain(self.textures.iter().flat_map(Textured::sentences))
+        let sentences = self.of_corners().into_iter().chain(self.textures.iter().flat_map(Textured::sentences));
+        sentences.chain(self.of_holes())
+    }
+
+    /// A sentence on holes of textures; `None` if there are none.
+    fn of_holes(&self) -> Option<String> {
+        let has = counted(self.materials_with_holes, ["material has a texture with holes", "materials have textures with holes"]);
+        let what = match self.textures {
+            Some(_) => "a program needs the feature transparency to draw them",
+            None => "they are filled in; --colours texture keeps them, for a program with the features textures and transparency",
+        };
+        (self.materials_with_holes > 0).then(|| format!("{has}: {what}"))
     }
 
     /// A sentence on colours at corners; `None` if no triangle has any.

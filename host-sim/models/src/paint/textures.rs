@@ -6,7 +6,7 @@ use super::{
 };
 use crate::{
     coat::{Coat, Texels, TextureSize},
-    mesh::Mesh,
+    mesh::{Mesh, Rgb},
     texture::Image,
 };
 use microphong::stream::record::{self, Colour, PALETTE};
@@ -35,9 +35,15 @@ impl Textures {
         }
         let mut all = Vec::new();
         for most in iter::successors(Some(MOST), |most| Some(most / 2).filter(|&most| most >= PALETTE)) {
-            let reduce = |(size, pixels): &([u8; 2], Vec<_>)| {
-                let (palette, indices) = indexed(pixels, most);
-                Arc::new(Texels { size: *size, palette, indices })
+            let reduce = |(size, pixels): &([u8; 2], Vec<Option<Rgb>>)| {
+                let has_holes = pixels.contains(&None);
+                let colours: Vec<Rgb> = pixels.iter().copied().flatten().collect();
+                let (mut palette, indices) = indexed(&colours, most - usize::from(has_holes));
+                let hole = has_holes.then_some(palette.len() as u8);
+                palette.extend(hole.map(|_| [0; 3]));
+                let mut indices = indices.into_iter();
+                let index = |pixel: &Option<Rgb>| pixel.and_then(|_| indices.next()).or(hole).unwrap_or_default();
+                Arc::new(Texels { size: *size, palette, indices: pixels.iter().map(index).collect(), hole })
             };
             all = images.iter().map(reduce).collect();
             if all.iter().map(|texels: &Arc<Texels>| blocks(&texels.palette)).sum::<usize>() <= BLOCKS - MOST / PALETTE {
@@ -85,8 +91,8 @@ impl Textures {
     }
 }
 
-/// The binary logarithms of width and height of the texture of an image, and its pixels.
-fn resampled(image: &Image, largest: TextureSize) -> ([u8; 2], Vec<[u8; 3]>) {
+/// The binary logarithms of width and height of the texture of an image, and its pixels, of which some are holes.
+fn resampled(image: &Image, largest: TextureSize) -> ([u8; 2], Vec<Option<Rgb>>) {
     let size = image.size().map(|pixels| largest.side(pixels));
     (size, image.resampled(size.map(|side| 1 << side)))
 }

@@ -3,7 +3,7 @@
 
 use crate::{
     arch::product::upper,
-    features::VERTEX_COLOURS,
+    features::{TRANSPARENCY, VERTEX_COLOURS},
     format::FULL,
     interpolate::{
         Constant, Patch, Walker,
@@ -254,7 +254,11 @@ fn draw_textured<C: Pixel>(
     tables: MaterialTables<'_, C>,
     band: &mut Band<'_, C>,
 ) -> Option<u32> {
-    let sampled = setup.sampled()?;
+    if setup.has_holes() {
+        let sampled = setup.sampled::<TRANSPARENCY>()?;
+        return draw_painted(setup, cosines, lengths, || sampled, tables, band);
+    }
+    let sampled = setup.sampled::<false>()?;
     draw_painted(setup, cosines, lengths, || sampled, tables, band)
 }
 

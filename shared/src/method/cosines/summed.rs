@@ -5,7 +5,7 @@
 
 use crate::{
     arch::product::upper,
-    features::VERTEX_COLOURS,
+    features::{TRANSPARENCY, VERTEX_COLOURS},
     format::MAX_LIGHTS,
     interpolate::{
         Patch, Walker,
@@ -156,7 +156,11 @@ pub(super) fn draw<C: Pixel>(
     let patch = || (sums(setup, lengths, &lights.corners), lengths.square(setup));
     let shader = OneByOne { colours, lookup, lengths: HalfRsqrt::get(), lights, row: setup.gradients.row() };
     if setup.has_texture() {
-        let sampled = setup.sampled()?;
+        if setup.has_holes() {
+            let sampled = setup.sampled::<TRANSPARENCY>()?;
+            return Some(setup.fill(|| (Column, (sampled, ByColumn(patch()))), shader, band));
+        }
+        let sampled = setup.sampled::<false>()?;
         return Some(setup.fill(|| (Column, (sampled, ByColumn(patch()))), shader, band));
     }
     if VERTEX_COLOURS && let Some(albedos) = setup.albedos() {
