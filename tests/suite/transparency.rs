@@ -221,10 +221,10 @@ fn wrong_transparency_is_refused() {
 /// Instructions that a pixel on a Cortex-M3 may take more than without the feature: where all is opaque, through glass, with a texture without holes, and
 /// with holes, each with all pixels of triangles that face the viewer.
 const LIMITS: [(Shader, [f64; 4]); 4] = [
-    (Shader::FLAT, [0.5, 15.0, 0.5, 6.0]),
-    (Shader::GOURAUD, [0.5, 15.0, 0.5, 6.0]),
-    (Shader::PHONG, [0.5, 15.0, 0.5, 6.0]),
-    (Shader::AUTO, [0.5, 15.0, 0.5, 6.0]),
+    (Shader::FLAT, [0.5, 24.0, 12.0, 12.0]),
+    (Shader::GOURAUD, [0.5, 24.0, 12.0, 12.0]),
+    (Shader::PHONG, [0.5, 24.0, 12.0, 12.0]),
+    (Shader::AUTO, [0.5, 24.0, 12.0, 12.0]),
 ];
 
 #[test]

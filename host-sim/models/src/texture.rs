@@ -92,6 +92,8 @@ impl Image {
         decoder.decode_headers().map_err(damaged)?;
         let (width, height) = decoder.dimensions().context("the image is damaged")?;
         ensure!(width * height <= most, TOO_MANY);
+        // The decoder expects it, and would panic.
+        ensure!(has_finest_luma(bytes), "the image is damaged: its brightness is coarser than its colours");
         let data = decoder.decode().map_err(damaged)?;
         Self::of(width, &data, data.len() / (width * height).max(1))
     }
@@ -203,6 +205,31 @@ impl Image {
         };
         rows.iter().flat_map(|row| columns.iter().map(move |column| mean(row, column))).collect()
     }
+}
+
+/// Whether the first channel of a JPEG file, which is the brightness, has at least as many samples as the others, as all programs write it.
+fn has_finest_luma(bytes: &[u8]) -> bool {
+    let mut rest = bytes.get(2..).unwrap_or_default();
+    // Segments begin with 0xFF, a marker and a length. 0xC0 to 0xC2 are frames, of which each channel has a byte with its two numbers of samples.
+    while let [0xFF, marker, high, low, ..] = *rest {
+        // Any number of these bytes may come before a marker.
+        if marker == 0xFF {
+            rest = &rest[1..];
+            continue;
+        }
+        let length = usize::from(u16::from_be_bytes([high, low]));
+        let segment = rest.get(4..2 + length).unwrap_or_default();
+        if (0xC0..=0xC2).contains(&marker) {
+            let samples: Vec<_> =
+                segment.get(6..).unwrap_or_default().chunks_exact(3).map(|channel| [channel[1] >> 4, channel[1] & 15]).collect();
+            let is_finest = |[x, y]: [u8; 2]| samples.iter().all(|other| other[0] <= x && other[1] <= y);
+            if !samples.first().is_some_and(|&first| is_finest(first)) {
+                return false;
+            }
+        }
+        rest = rest.get(2 + length..).unwrap_or_default();
+    }
+    true
 }
 
 /// The pixels of a row that a new pixel covers.

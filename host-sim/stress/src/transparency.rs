@@ -40,7 +40,7 @@ mod tests {
     #[test]
     fn it_is_not_rare() {
         let [mut transparent, mut holes] = [0; 2];
-        for number in 0..400 {
+        for number in 0..1200 {
             let mut random = Random::new(5, number);
             let wishes = Wishes { closed: false, unclipped: true, triangles: 60, hard: Hard::default() };
             let Some(case) = scenes::case(&mut random, wishes) else { continue };

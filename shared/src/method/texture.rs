@@ -102,15 +102,9 @@ impl TriangleSetup<'_> {
         perspective::linear_way(self.corners.map(|corner| corner.depth), sampler.range(places), MOST)
     }
 
-    /// Whether the texture of the triangle may have holes.
-    #[inline(always)]
-    pub(crate) fn has_holes(&self) -> bool {
-        TRANSPARENCY && self.texture.iter().flatten().any(|texture| texture.sampler.has_holes)
-    }
-
-    /// The colours of the texture over the triangle, with `HOLES` or none; `None` if it has none, or a quadratic is too far off for the place.
+    /// The colours of the texture over the triangle; `None` if it has none, or a quadratic is too far off for the place.
     #[inline(never)]
-    pub(crate) fn sampled<const HOLES: bool>(&self) -> Option<Sampled<Placed<'_, ByColumn<Quadric<2>>, HOLES>>> {
+    pub(crate) fn sampled(&self) -> Option<Sampled<Placed<'_, ByColumn<Quadric<2>>>>> {
         let texture = self.texture.first()?.as_ref()?;
         Some(Sampled(Placed { place: ByColumn(self.place_on_screen(texture)?), sampler: texture.sampler }))
     }
@@ -234,37 +228,10 @@ pub(crate) fn fill<C: Pixel>(
     if C::GRAY || is_bright || !matches!(setup.linear_way(range), LinearWay::Plane) {
         return None;
     }
-    let levels = Levels { light, highlights, is_matt };
-    // Where a texture has no holes, no pixel asks for them.
-    if setup.has_holes() {
-        fill_placed::<C, TRANSPARENCY>(setup, texture, shading, way, &levels, band)
-    } else {
-        fill_placed::<C, false>(setup, texture, shading, way, &levels, band)
-    }
-}
-
-/// The levels at the corners of a triangle: scaled quarters of ambient and diffuse light, and highlights.
-struct Levels {
-    light: [[i32; 3]; 3],
-    highlights: [[i32; 3]; 3],
-    /// There are no highlights.
-    is_matt: bool,
-}
-
-/// Draws a triangle with a texture that has `HOLES`, or none. `None` if a quadratic is too far off for the place.
-#[inline(always)]
-fn fill_placed<C: Pixel, const HOLES: bool>(
-    setup: &TriangleSetup<'_>,
-    texture: &Textured<'_>,
-    shading: &Shading<'_>,
-    way: LinearWay,
-    &Levels { light, highlights, is_matt }: &Levels,
-    band: &mut Band<'_, C>,
-) -> Option<u32> {
-    let sampler = texture.sampler;
     let fit = |levels| Nodes::<3, 3, RANGE>::new(channels(levels), CHANNEL - LEVEL).fit(setup.gradients);
-    let plane = || Placed::<_, HOLES> { place: fitted(&linear(corner_nodes(texture)), setup.gradients), sampler };
-    let quadric = |shares| Placed::<_, HOLES> { place: ByColumn(fitted(&place_nodes(texture, shares), setup.gradients)), sampler };
+    let sampler = texture.sampler;
+    let plane = || Placed { place: fitted(&linear(corner_nodes(texture)), setup.gradients), sampler };
+    let quadric = |shares| Placed { place: ByColumn(fitted(&place_nodes(texture, shares), setup.gradients)), sampler };
     let pixels = Texels::<C>::new(sampler, shading.reflectance.quarter());
     Some(match (way, is_matt) {
         (LinearWay::InSpace, _) => return None,
@@ -339,15 +306,15 @@ impl<C: Pixel> PixelShader<(([u32; 3], [u32; 3]), [u32; 2])> for Texels<'_, C> {
 
 /// The place in a texture, by a polynomial. Where the texture has a hole, the surface covers no pixel.
 #[derive(Clone, Copy, Debug)]
-pub struct Placed<'f, P, const HOLES: bool = TRANSPARENCY> {
+pub struct Placed<'f, P> {
     /// The place.
     pub place: P,
     /// The texture.
     pub sampler: &'f Sampler<'f>,
 }
 
-impl<'f, P: Patch<Walker: Walker<Value = [u32; 2]>>, const HOLES: bool> Patch for Placed<'f, P, HOLES> {
-    type Walker = Placed<'f, P::Walker, HOLES>;
+impl<'f, P: Patch<Walker: Walker<Value = [u32; 2]>>> Patch for Placed<'f, P> {
+    type Walker = Placed<'f, P::Walker>;
 
     #[inline(always)]
     fn jump(&mut self, rows: i32) {
@@ -368,7 +335,7 @@ impl<'f, P: Patch<Walker: Walker<Value = [u32; 2]>>, const HOLES: bool> Patch fo
     const WORDS: usize = 1 << 8;
 }
 
-impl<W: Walker<Value = [u32; 2]>, const HOLES: bool> Walker for Placed<'_, W, HOLES> {
+impl<W: Walker<Value = [u32; 2]>> Walker for Placed<'_, W> {
     type Value = [u32; 2];
 
     #[inline(always)]
@@ -381,11 +348,11 @@ impl<W: Walker<Value = [u32; 2]>, const HOLES: bool> Walker for Placed<'_, W, HO
         self.place.value()
     }
 
-    const HAS_HOLES: bool = HOLES;
+    const HAS_HOLES: bool = TRANSPARENCY;
 
     #[inline(always)]
     fn may_have_holes(&self) -> bool {
-        HOLES && self.sampler.has_holes
+        TRANSPARENCY && self.sampler.has_holes
     }
 
     #[inline(always)]
@@ -399,8 +366,8 @@ impl<W: Walker<Value = [u32; 2]>, const HOLES: bool> Walker for Placed<'_, W, HO
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct Sampled<P>(P);
 
-impl<'f, P: Patch<Walker: Walker<Value = [u32; 2]>>, const HOLES: bool> Patch for Sampled<Placed<'f, P, HOLES>> {
-    type Walker = Sampled<Placed<'f, P::Walker, HOLES>>;
+impl<'f, P: Patch<Walker: Walker<Value = [u32; 2]>>> Patch for Sampled<Placed<'f, P>> {
+    type Walker = Sampled<Placed<'f, P::Walker>>;
 
     #[inline(always)]
     fn jump(&mut self, rows: i32) {
@@ -421,7 +388,7 @@ impl<'f, P: Patch<Walker: Walker<Value = [u32; 2]>>, const HOLES: bool> Patch fo
     const WORDS: usize = 1 << 8;
 }
 
-impl<W: Walker<Value = [u32; 2]>, const HOLES: bool> Walker for Sampled<Placed<'_, W, HOLES>> {
+impl<W: Walker<Value = [u32; 2]>> Walker for Sampled<Placed<'_, W>> {
     type Value = [u32; 3];
 
     #[inline(always)]
@@ -437,7 +404,7 @@ impl<W: Walker<Value = [u32; 2]>, const HOLES: bool> Walker for Sampled<Placed<'
         [share(r), share(g), share(b)]
     }
 
-    const HAS_HOLES: bool = HOLES;
+    const HAS_HOLES: bool = TRANSPARENCY;
 
     #[inline(always)]
     fn covers(&self) -> bool {

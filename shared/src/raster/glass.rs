@@ -1,6 +1,6 @@
 //! Transparent surfaces: a pixel keeps a part of the colour that it had before.
 //!
-//! The loops of pixels know nothing of it. A transparent row is drawn in runs of [`RUN`] pixels into a buffer, with a copy of the depth. Where the depth has
+//! The loops of pixels know nothing of it. They draw a transparent row in runs of [`RUN`] pixels into a buffer, with a copy of the depth. Where the depth has
 //! changed, the pixels of the buffer are mixed with those of the band. The depth of the band stays, so that a surface behind a transparent one can be drawn
 //! later. All transparent triangles are drawn after the others.
 
@@ -53,12 +53,16 @@ impl<C: Pixel> Default for Sheet<C> {
 }
 
 impl<C: Pixel> Sheet<C> {
-    /// Room for the pixels of a run, and a copy of its depth. There are no depths if they are not tested.
-    #[inline(always)]
-    pub(crate) fn run(&mut self, pixels: usize, depth: &[u16]) -> (&mut [C], &mut [u16]) {
+    /// Copies the depth of a run. There are none if depth is not tested.
+    #[inline]
+    pub(crate) fn put_depth(&mut self, depth: &[u16]) {
         self.depth.iter_mut().zip(depth).for_each(|(to, &from)| *to = from);
-        let depth = self.depth.get_mut(..depth.len()).unwrap_or_default();
-        (self.pixels.get_mut(..pixels).unwrap_or_default(), depth)
+    }
+
+    /// Room for the pixels of a run, and the copy of its depth.
+    #[inline]
+    pub(crate) fn run(&mut self) -> (&mut [C], &mut [u16]) {
+        (&mut self.pixels, &mut self.depth)
     }
 
     /// Mixes the run that has been drawn with the `pixels` of the band, which have this `depth`.

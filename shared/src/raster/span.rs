@@ -14,6 +14,9 @@ pub(crate) trait DepthTest: Walker {
     /// Whether pixel `i` of `depth` passes the test.
     fn is_nearer(&self, depth: &[u16], i: usize) -> bool;
 
+    /// Stores the depth of pixel `i`.
+    fn store(&self, depth: &mut [u16], i: usize);
+
     /// Whether pixel `i` of `depth` passes the test; if so, its depth is stored.
     fn passes(&self, depth: &mut [u16], i: usize) -> bool;
 }
@@ -29,6 +32,13 @@ impl DepthTest for LinearWalker<1> {
     fn is_nearer(&self, depth: &[u16], i: usize) -> bool {
         let inv_depth = (self.value()[0] >> 16) as u16;
         depth.get(i).is_some_and(|&depth| inv_depth > depth)
+    }
+
+    #[inline(always)]
+    fn store(&self, depth: &mut [u16], i: usize) {
+        if let Some(depth) = depth.get_mut(i) {
+            *depth = (self.value()[0] >> 16) as u16;
+        }
     }
 
     #[inline(always)]
@@ -54,6 +64,9 @@ impl DepthTest for Constant {
     fn is_nearer(&self, _: &[u16], _: usize) -> bool {
         true
     }
+
+    #[inline]
+    fn store(&self, _: &mut [u16], _: usize) {}
 
     #[inline]
     fn passes(&self, _: &mut [u16], _: usize) -> bool {
@@ -83,10 +96,12 @@ pub(crate) fn fill<S: DepthTest, W: Walker, T: PixelShader<W::Value>>(
         i -= 1;
         test.step();
         walker.step();
-        if W::HAS_HOLES && !(test.is_nearer(depth, i) && walker.covers()) {
-            continue;
-        }
-        if test.passes(depth, i) {
+        if W::HAS_HOLES {
+            if test.is_nearer(depth, i) && walker.covers() {
+                pixels[i] = shader.shade(walker.value());
+                test.store(depth, i);
+            }
+        } else if test.passes(depth, i) {
             pixels[i] = shader.shade(walker.value());
         }
     }

@@ -2,7 +2,7 @@
 
 use crate::{
     arch::product::HALVES,
-    features::TRANSPARENCY,
+    features::{TRANSPARENCY, TRANSPARENT},
     format::{DEPTH, DEPTH_NODE, DEPTH_WALK},
     geometry::projection::ScreenVertex,
     interpolate::{Constant, Patch, Walker, plane::Plane},
@@ -20,7 +20,7 @@ use crate::{
         gradients::Gradients,
     },
 };
-use core::{hint::black_box, ops::Range};
+use core::hint::black_box;
 
 /// A triangle on the screen, its top corner first, clockwise on a screen whose y runs down.
 #[derive(Clone, Copy, Debug)]
@@ -74,7 +74,7 @@ pub(crate) struct Rows<'b, D, P: Patch, T: PixelShader<<P::Walker as Walker>::Va
     pub(crate) patch: P,
     pub(crate) shader: T,
     /// Room for a run of a transparent surface.
-    pub(crate) sheet: IfTransparent<&'b mut Sheet<T::Pixel>>,
+    pub(crate) sheet: IfTransparent<Option<&'b mut Sheet<T::Pixel>>>,
 }
 
 /// All bits of the number of pixels in a row.
@@ -225,11 +225,10 @@ impl ScreenTriangle {
             if row < stop {
                 rows.height = stop.wrapping_sub(row) as u32;
                 rows.count = rows.sides.columns();
-                // A transparent surface has rows of its own, so that all others take no longer.
-                if TRANSPARENCY && rows.sheet.iter().any(|sheet| sheet.glass.is_some()) {
-                    fill_rows::<_, _, _, TRANSPARENCY>(&mut rows);
+                if TRANSPARENCY && rows.sheet.iter().flatten().any(|sheet| sheet.glass.is_some()) {
+                    rows.fill_glass();
                 } else {
-                    fill_rows::<_, _, _, false>(&mut rows);
+                    fill_rows(&mut rows);
                 }
             }
             if stop >= sides.end {
@@ -304,23 +303,23 @@ fn save_active<D: Patch, P: Patch>((key, edges): (u32, EdgeState), depth: &D, pa
     active.put(|active_triangle| active_triangle.save((key, edges), depth, patch));
 }
 
-/// Fills the rows to come; there is at least one. `GLASS` rows are those of a transparent surface.
+/// Fills the rows to come; there is at least one.
 ///
 /// On Armv7-M everything that lives longer than a row stays in memory, behind one pointer that is opaque to the compiler: by measurement
 /// the pixel loop then has all registers. `count` is read from there too, written a row earlier: if it were derived in the row, the
 /// compiler would count in two registers instead of one. On other processors, or where nothing is walked, a copy on the stack takes fewer
 /// instructions.
 #[inline(never)]
-pub(crate) fn fill_rows<D: Patch<Walker: DepthTest>, P: Patch, T: PixelShader<<P::Walker as Walker>::Value>, const GLASS: bool>(
+pub(crate) fn fill_rows<D: Patch<Walker: DepthTest>, P: Patch, T: PixelShader<<P::Walker as Walker>::Value>>(
     mut rows: &mut Rows<'_, D, P, T>,
 ) {
     if Rows::<D, P, T>::LOCAL {
-        rows.fill_here::<GLASS>();
+        rows.fill_here();
         return;
     }
     loop {
         rows = black_box(rows);
-        rows.fill::<GLASS>();
+        rows.fill();
         rows.step();
         rows.height = rows.height.wrapping_sub(1);
         if rows.height == 0 {
@@ -353,13 +352,13 @@ impl<'b, D: Patch<Walker: DepthTest>, P: Patch, T: PixelShader<<P::Walker as Wal
             depth,
             patch,
             shader,
-            sheet: band.sheet.each_mut(),
+            sheet: band.sheet.each_mut().map(Some),
         }
     }
 
     /// Fills one row and steps the edges to the next.
     #[inline(always)]
-    fn fill<const GLASS: bool>(&mut self) {
+    fn fill(&mut self) {
         // On Armv6-M one register counts and indexes both buffers, for which the compiler has to know that twice the count does not
         // overflow.
         let count = if HALVES { self.count & ROW } else { self.count } as usize;
@@ -378,48 +377,66 @@ impl<'b, D: Patch<Walker: DepthTest>, P: Patch, T: PixelShader<<P::Walker as Wal
             && let Some(pixels) = self.pixels.get_mut(start..end)
             && let Some(buffer) = D::Walker::depth(self.buffer, start..end)
         {
-            if GLASS {
-                self.fill_glass(start..end, right as i32);
-            } else {
-                // By measurement, loops have more registers if raised values are entered before depth, and others after it.
-                let (test, walker) = match self.shader.raise() {
-                    Some(by) => {
-                        let walker = self.patch.raised(&by).enter(right as i32);
-                        (self.depth.enter(right as i32), walker)
-                    }
-                    None => (self.depth.enter(right as i32), self.patch.enter(right as i32)),
-                };
-                fill(pixels, buffer, test, walker, self.shader);
-            }
+            // By measurement, loops have more registers if raised values are entered before depth, and others after it.
+            let (test, walker) = match self.shader.raise() {
+                Some(by) => {
+                    let walker = self.patch.raised(&by).enter(right as i32);
+                    (self.depth.enter(right as i32), walker)
+                }
+                None => (self.depth.enter(right as i32), self.patch.enter(right as i32)),
+            };
+            fill(pixels, buffer, test, walker, self.shader);
             if !Self::AHEAD && late {
                 self.filled = self.filled.wrapping_add(count as u32);
             }
         }
     }
 
-    /// Fills the pixels of a row of a transparent surface, run by run. The row ends at column `right`.
-    #[inline(always)]
-    fn fill_glass(&mut self, Range { start, end }: Range<usize>, mut right: i32) {
-        let (Some(sheet), Some(mut pixels)) = (self.sheet.first_mut(), self.pixels.get_mut(start..end)) else { return };
-        let Some(depth) = D::Walker::depth(self.buffer, start..end) else { return };
-        let mut depth = &*depth;
-        while !pixels.is_empty() {
-            let before = pixels.len().saturating_sub(RUN);
-            let (pixels_before, behind) = pixels.split_at_mut(before);
-            let (depth_before, tested) = depth.split_at(before.min(depth.len()));
-            let (run, depth_of_run) = sheet.run(behind.len(), tested);
-            let patch = self.shader.raise().map_or(self.patch, |by| self.patch.raised(&by));
-            fill(run, depth_of_run, self.depth.enter(right), patch.enter(right), self.shader);
-            sheet.show(behind, tested);
-            (pixels, depth, right) = (pixels_before, depth_before, right.wrapping_sub(RUN as i32));
+    /// Fills the rows to come of a transparent surface: run by run into a sheet, as rows of their own, which are then mixed with the band.
+    #[inline(never)]
+    fn fill_glass(&mut self) {
+        while self.height > 0 {
+            let [left, mut end] = [self.sides.left, self.sides.right].map(|side| (side.x >> COLUMN) as usize);
+            while end > left {
+                let first = end.saturating_sub(RUN).max(left);
+                let run = self.start.wrapping_add(first)..self.start.wrapping_add(end);
+                let Some((sheet, behind)) = self.sheet.iter_mut().flatten().next().zip(self.pixels.get_mut(run.clone())) else { return };
+                let Some(depth) = D::Walker::depth(self.buffer, run) else { return };
+                sheet.put_depth(depth);
+                let mut sides = self.sides;
+                (sides.left.x, sides.right.x) = ((first as u32) << COLUMN, (end as u32) << COLUMN);
+                let (pixels, buffer) = sheet.run();
+                fill_rows(&mut Rows {
+                    pixels,
+                    buffer,
+                    width: 0,
+                    start: first.wrapping_neg(),
+                    sides,
+                    count: (end - first) as u32,
+                    height: 1,
+                    filled: 0,
+                    depth: self.depth,
+                    patch: self.patch,
+                    shader: self.shader,
+                    sheet: [const { None }; TRANSPARENT],
+                });
+                sheet.show(behind, depth);
+                end = first;
+            }
+            self.filled = self.filled.wrapping_add(self.count);
+            self.start = self.start.wrapping_add(self.width);
+            self.sides.skip(1);
+            self.count = self.sides.columns();
+            self.step();
+            self.height -= 1;
         }
     }
 
     /// Fills all rows in a local copy.
     #[inline(always)]
-    fn fill_here<const GLASS: bool>(&mut self) {
+    fn fill_here(&mut self) {
         let Rows { width, start, sides, count, height, filled, depth, patch, shader, .. } = *self;
-        let (pixels, sheet) = (&mut *self.pixels, self.sheet.each_mut().map(|sheet| &mut **sheet));
+        let (pixels, sheet) = (&mut *self.pixels, [const { None }; TRANSPARENT]);
         // Cut to the length of the pixels, it needs no test of its own in each row. On x86-64, by measurement, that costs an instruction a
         // pixel.
         let length = if cfg!(target_arch = "arm") { pixels.len() } else { self.buffer.len() };
@@ -432,7 +449,7 @@ impl<'b, D: Patch<Walker: DepthTest>, P: Patch, T: PixelShader<<P::Walker as Wal
             if !HALVES && cfg!(target_arch = "arm") {
                 rows.count = black_box(rows.count);
             }
-            rows.fill::<GLASS>();
+            rows.fill();
             rows.step();
             rows.filled = rows.filled.wrapping_add(ahead(rows.count));
             rows.height = rows.height.wrapping_sub(1);

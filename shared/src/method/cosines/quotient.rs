@@ -3,7 +3,7 @@
 
 use crate::{
     arch::product::upper,
-    features::{TRANSPARENCY, VERTEX_COLOURS},
+    features::VERTEX_COLOURS,
     format::FULL,
     interpolate::{
         Constant, Patch, Walker,
@@ -254,11 +254,7 @@ fn draw_textured<C: Pixel>(
     tables: MaterialTables<'_, C>,
     band: &mut Band<'_, C>,
 ) -> Option<u32> {
-    if setup.has_holes() {
-        let sampled = setup.sampled::<TRANSPARENCY>()?;
-        return draw_painted(setup, cosines, lengths, || sampled, tables, band);
-    }
-    let sampled = setup.sampled::<false>()?;
+    let sampled = setup.sampled()?;
     draw_painted(setup, cosines, lengths, || sampled, tables, band)
 }
 

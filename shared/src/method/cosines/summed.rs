@@ -5,7 +5,7 @@
 
 use crate::{
     arch::product::upper,
-    features::{TRANSPARENCY, VERTEX_COLOURS},
+    features::VERTEX_COLOURS,
     format::MAX_LIGHTS,
     interpolate::{
         Patch, Walker,
@@ -156,11 +156,7 @@ pub(super) fn draw<C: Pixel>(
     let patch = || (sums(setup, lengths, &lights.corners), lengths.square(setup));
     let shader = OneByOne { colours, lookup, lengths: HalfRsqrt::get(), lights, row: setup.gradients.row() };
     if setup.has_texture() {
-        if setup.has_holes() {
-            let sampled = setup.sampled::<TRANSPARENCY>()?;
-            return Some(setup.fill(|| (Column, (sampled, ByColumn(patch()))), shader, band));
-        }
-        let sampled = setup.sampled::<false>()?;
+        let sampled = setup.sampled()?;
         return Some(setup.fill(|| (Column, (sampled, ByColumn(patch()))), shader, band));
     }
     if VERTEX_COLOURS && let Some(albedos) = setup.albedos() {
