@@ -13,7 +13,7 @@ use microphong_sim::{
     bench::{Bench, Processor, board_styles::Program},
     board::{Board, build},
     bytes::StreamBytes,
-    render::{self, Format, Settings},
+    render::{self, Format, Settings, Style},
     scene::{self, Scene},
     shader::Shader,
     stress::records::Records,
@@ -181,6 +181,32 @@ fn holes_hide_nothing() {
     for shader in CORE {
         assert!(drawn::<Rgb565>(stream, shader, 24, &all) == drawn::<Rgb565>(stream, shader, 24, &boards), "{}", shader.name());
     }
+}
+
+/// Edges of glass are smooth: against the mean of 16 pixels of a larger picture, the error is less than without antialiasing.
+#[test]
+fn edges_of_glass_are_smooth() {
+    let stream = glass([5, 11], 0);
+    let stream = stream.parse().unwrap();
+    let picture = |factor: u32, antialias: bool| {
+        let size = Size::new(SIZE.width * factor, SIZE.height * factor);
+        let style = Style { antialias, ..Shader::FLAT.into() };
+        render::picture(stream, &Settings { size, style, band_rows: 24, format: Format::Rgb888 }, 0).unwrap().rgb
+    };
+    let fine = picture(4, false);
+    let (width, row) = (SIZE.width as usize, SIZE.width as usize * 4 * 3);
+    let mean = |k: usize| {
+        let (channel, x, y) = (k % 3, k / 3 % width, k / 3 / width);
+        let of = |i: usize| f64::from(fine[(4 * y + i / 4) * row + (4 * x + i % 4) * 3 + channel]);
+        (0..16).map(of).sum::<f64>() / 16.0
+    };
+    let rms = |picture: &[u8]| {
+        let squares = picture.iter().enumerate().map(|(k, &channel)| (f64::from(channel) - mean(k)).powi(2));
+        (squares.sum::<f64>() / picture.len() as f64).sqrt()
+    };
+    let [jagged, smooth] = [false, true].map(|antialias| rms(&picture(1, antialias)));
+    println!("root of the mean square, of 255: {jagged:.2} jagged, {smooth:.2} smooth");
+    assert!(smooth < 0.7 * jagged, "{smooth} {jagged}");
 }
 
 /// A board draws the bits of this computer.

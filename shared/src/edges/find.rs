@@ -2,6 +2,7 @@
 
 use crate::{
     edges::{Edge, Place, cut::Flat},
+    features::TRANSPARENCY,
     geometry::{
         clip::{clip, clip_edge},
         cull::Facing,
@@ -27,6 +28,8 @@ pub(crate) struct Outlined<'f> {
     pub(crate) vertices: &'f [Vertex],
     /// The cached vertices on the screen.
     pub(crate) cached: &'f [ScreenVertex],
+    /// Whether something is seen through it, so that the depth buffer does not have its depth.
+    pub(crate) is_transparent: bool,
 }
 
 /// Triangles of a mesh, one bit each.
@@ -84,7 +87,9 @@ impl Outlined<'_> {
         let Some([from, to]) = ends else { return };
         // An object may stand on a surface. That surface is nearer than the object's lower edge, because it rises towards the viewer.
         let beyond = beyond.unwrap_or(from[2].max(to[2]) >> RISE);
-        if let Some(edge) = Edge::new([from, to], self.range(triangle), beyond) {
+        // The depth of a transparent surface is not known: whatever is seen beside its edge lies behind it, or the surface beyond is nearer.
+        let range = if TRANSPARENCY && self.is_transparent { i32::MAX } else { self.range(triangle) };
+        if let Some(edge) = Edge::new([from, to], range, beyond) {
             put(&edge);
         }
     }

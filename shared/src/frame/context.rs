@@ -221,6 +221,7 @@ impl<'r> Context<'r> {
             neighbours: stream.neighbours_of(mesh),
             vertices: stream.vertices_of(mesh)?,
             cached: self.vertices.get(placed.first_vertex..).unwrap_or_default(),
+            is_transparent: mesh.is_transparent(),
         })
     }
 
