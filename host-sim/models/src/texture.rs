@@ -103,7 +103,8 @@ impl Image {
         ensure!(width > 0 && channels > 0 && data.len() >= width * channels, "the image is empty");
         let colour = |pixel: &[u8]| if channels < 3 { [pixel[0]; 3] } else { [pixel[0], pixel[1], pixel[2]] };
         let all = data.chunks_exact(channels);
-        let opacity: Vec<u8> = if channels % 2 == 0 { all.clone().filter_map(|pixel| pixel.last().copied()).collect() } else { Vec::new() };
+        let opacity: Vec<u8> =
+            if channels.is_multiple_of(2) { all.clone().filter_map(|pixel| pixel.last().copied()).collect() } else { Vec::new() };
         let opacity = if opacity.iter().all(|&opacity| opacity == u8::MAX) { Vec::new() } else { opacity };
         Ok(Self { width, pixels: all.map(colour).collect(), opacity, holes: Vec::new() })
     }
