@@ -1,6 +1,6 @@
 //! Transparent surfaces: a pixel keeps a part of the colour that it had before.
 //!
-//! The loops of pixels know nothing of it. They draw a transparent row in runs of [`RUN`] pixels into a buffer, with a copy of the depth. Where the depth has
+//! The loops of pixels know nothing of it. They draw a transparent row in runs of 16 pixels into a buffer, with a copy of the depth. Where the depth has
 //! changed, the pixels of the buffer are mixed with those of the band. The depth of the band stays, so that a surface behind a transparent one can be drawn
 //! later. All transparent triangles are drawn after the others.
 
