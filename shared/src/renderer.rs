@@ -14,7 +14,7 @@ use crate::{
     placement::{Placements, Placing},
     scene::{Limits, Scene},
     shader::Shader,
-    stream::record::{Camera, Light, Material, Mesh, PERSPECTIVE, POINT, VIEWER_LOCAL},
+    stream::record::{Camera, Light, Material, PERSPECTIVE, POINT, VIEWER_LOCAL},
 };
 use core::mem;
 use embedded_graphics_core::geometry::Size;
@@ -397,7 +397,7 @@ impl<'a, C: Pixel> Renderer<'a, C> {
         }
         // Everything is drawn where colours have changed, or the view has.
         // Which transparent surfaces are in front of others may change outside of the area that has changed.
-        let is_opaque = !features::TRANSPARENCY || !self.scene.stream.meshes.iter().any(Mesh::is_transparent);
+        let is_opaque = !features::TRANSPARENCY || !self.scene.stream.meshes.iter().any(crate::stream::record::Mesh::is_transparent);
         let is_partial = features::REDRAW && self.settings.partial_redraw && !self.scene.repainted && is_opaque;
         if !is_partial {
             self.region.fill(self.settings.size);
