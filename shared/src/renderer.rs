@@ -396,9 +396,7 @@ impl<'a, C: Pixel> Renderer<'a, C> {
             self.fill_tables();
         }
         // Everything is drawn where colours have changed, or the view has.
-        // Which transparent surfaces are in front of others may change outside of the area that has changed.
-        let is_opaque = !features::TRANSPARENCY || !self.scene.stream.meshes.iter().any(crate::stream::record::Mesh::is_transparent);
-        let is_partial = features::REDRAW && self.settings.partial_redraw && !self.scene.repainted && is_opaque;
+        let is_partial = features::REDRAW && self.settings.partial_redraw && !self.scene.repainted;
         if !is_partial {
             self.region.fill(self.settings.size);
         } else if !self.is_invalidated {

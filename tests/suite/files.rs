@@ -327,21 +327,11 @@ fn row_of(pixels: &[[u8; 3]]) -> Vec<u8> {
     image_of(pixels, pixels.len())
 }
 
-/// A PNG of rows of this width.
-fn image_of(pixels: &[[u8; 3]], width: usize) -> Vec<u8> {
+/// A PNG of rows of this width, of red, green and blue, and maybe of opacity.
+fn image_of<const CHANNELS: usize>(pixels: &[[u8; CHANNELS]], width: usize) -> Vec<u8> {
     let mut bytes = Vec::new();
     let mut encoder = png::Encoder::new(&mut bytes, width as u32, (pixels.len() / width) as u32);
-    encoder.set_color(png::ColorType::Rgb);
-    encoder.set_depth(png::BitDepth::Eight);
-    encoder.write_header().expect("a header").write_image_data(pixels.as_flattened()).expect("pixels");
-    bytes
-}
-
-/// A PNG of rows of this width, with the opacity of each pixel.
-fn image_with_opacity(pixels: &[[u8; 4]], width: usize) -> Vec<u8> {
-    let mut bytes = Vec::new();
-    let mut encoder = png::Encoder::new(&mut bytes, width as u32, (pixels.len() / width) as u32);
-    encoder.set_color(png::ColorType::Rgba);
+    encoder.set_color(if CHANNELS == 4 { png::ColorType::Rgba } else { png::ColorType::Rgb });
     encoder.set_depth(png::BitDepth::Eight);
     encoder.write_header().expect("a header").write_image_data(pixels.as_flattened()).expect("pixels");
     bytes
@@ -458,7 +448,7 @@ fn what_is_seen_through_surfaces_is_told() {
 
     let pixels: Vec<_> = (0..64).map(|k| [200, 100, 0, if k % 8 < 4 { 0 } else { 255 }]).collect();
     let leaf = "mtllib b.mtl\nv 0 0 0\nv 1 0 0\nv 1 1 0\nv 0 1 0\nvt 0 0\nvt 1 0\nvt 1 1\nvt 0 1\nusemtl leaf\nf 1/1 2/2 3/3 4/4\n";
-    place.file("b.obj", leaf).file("b.png", image_with_opacity(&pixels, 8));
+    place.file("b.obj", leaf).file("b.png", image_of(&pixels, 8));
     place.file("b.mtl", "newmtl leaf\nKd 1 1 1\nmap_Kd b.png\n");
     let said = place.converts(&["b.obj"]);
     assert!(said.contains("left out: opacity of textures of colour that no map_d names") && !said.contains("holes"), "{said}");

@@ -9,6 +9,7 @@ use crate::{
     change::{Change, State, eye, pose},
     random::Random,
     scenes::{self, Wishes},
+    transparency,
 };
 use embedded_graphics_core::{
     geometry::{Point, Size},
@@ -91,6 +92,7 @@ pub fn case(random: &mut Random, triangles: i32) -> Result<Option<Case>, String>
         look.cast = cast(random, &parts, &look)?;
     }
     let Ok(stream) = look.stream(&parts) else { return Ok(None) };
+    let stream = transparency::sometimes(random, stream);
     let mut case = scenes::styled(random, stream, size);
     case.frame = random.bits() as u32;
     Ok(Some(case))

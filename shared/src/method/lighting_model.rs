@@ -69,14 +69,6 @@ enum Painter<'a, W> {
 }
 
 impl<W: Patch<Walker: Walker<Value = [u32; 2]>>> Coloured<'_, W> {
-    /// The pixels of a run in which the surface has no hole, see [`covered`].
-    fn covered(&self, run: usize, [rows, x]: [i32; 2]) -> u32 {
-        match &self.painter {
-            Painter::Texture(place) if TEXTURES && TRANSPARENCY => covered(&enter(place, rows, x), run),
-            _ => u32::MAX,
-        }
-    }
-
     /// Multiplies the sums of ambient and diffuse light of the `visible` ones of `run` pixels by the colour, and adds highlights. The runs lie `rows` rows
     /// below the current one, left of the column `x`.
     fn paint(&mut self, levels: &mut [[i32; 3]; CHUNK], run: usize, visible: u32, [rows, x]: [i32; 2]) {
@@ -188,8 +180,13 @@ where
             // The column that the walkers of the run enter.
             let entry = end.wrapping_sub((count - first) as i32);
             first -= run;
-            let covered = colour.as_deref().map_or(u32::MAX, |colour| colour.covered(run, [rows, entry]));
-            let visible = target.visible(first, run, covered);
+            if TEXTURES
+                && TRANSPARENCY
+                && let Some(Coloured { painter: Painter::Texture(place), .. }) = &colour
+            {
+                target.cover(covered(&enter(place, rows, entry), run));
+            }
+            let visible = target.visible(first, run);
             // Counted down, and the index cut off: no bounds are left to check.
             let mut k = run;
             while k > 0 {

@@ -9,6 +9,10 @@ pub trait ByRows: Copy {
     #[inline(always)]
     fn step_row(&mut self) {}
 
+    /// Takes back the last step of a copy, as far as copies share what is stepped.
+    #[inline(always)]
+    fn take_back(&self) {}
+
     /// Moves down from the first row of the picture to `row`.
     #[inline(always)]
     fn start_at(&mut self, row: i32) {

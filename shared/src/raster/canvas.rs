@@ -7,7 +7,6 @@
 //! Cost: several times as much as a method's own loop if the method takes few instructions a pixel, and little more if it takes a hundred.
 
 use crate::{
-    features::TRANSPARENCY,
     format::{BIAS, INTENSITY, Intensity, RAMP},
     interpolate::{Patch, Walker, plane::LinearWalker},
     lighting::material_tables::MaterialTables,
@@ -42,18 +41,21 @@ pub trait SpanShader {
 
 /// Receives the pixels of a span, in runs from right to left.
 pub trait SpanTarget {
+    /// Says which of the pixels that are tested next the surface covers, as [`covered`] finds them. Surfaces without holes need not say it.
+    fn cover(&mut self, covered: u32);
+
     /// Tests the depth of `count` pixels, at most [`CHUNK`], from number `first` of the span on. Bit k of the result is 1 if pixel `first + k`
-    /// passes and is [`covered`].
-    fn visible(&mut self, first: usize, count: usize, covered: u32) -> u32;
+    /// passes.
+    fn visible(&mut self, first: usize, count: usize) -> u32;
 
     /// Stores the intensities of `visible` pixels from number `first` on, as [`Self::visible`] has returned them.
     fn put(&mut self, first: usize, visible: u32, intensities: &[Intensity; CHUNK]);
 }
 
 /// The pixels of a run in which the surface has no hole: bit k is 1 if it covers pixel k. `walker` stands right of the last of `count` pixels.
-#[inline(always)]
-pub fn covered<W: Walker>(walker: &W, count: usize) -> u32 {
-    if !(W::HAS_HOLES && walker.may_have_holes()) {
+#[inline]
+pub(crate) fn covered<W: Walker>(walker: &W, count: usize) -> u32 {
+    if !walker.may_have_holes() {
         return u32::MAX;
     }
     let mut walker = walker.clone();
@@ -102,7 +104,10 @@ impl<P: Patch, S: IntensityShader<<P::Walker as Walker>::Value>> SpanShader for 
         while first > 0 {
             let run = first.min(CHUNK);
             first -= run;
-            let visible = target.visible(first, run, covered(&walker, run));
+            if P::Walker::HAS_HOLES {
+                target.cover(covered(&walker, run));
+            }
+            let visible = target.visible(first, run);
             // Counted down, and the index cut off: no bounds are left to check.
             let mut k = run;
             while k > 0 {
@@ -203,8 +208,8 @@ impl<C: Pixel> Canvas for BandCanvas<'_, '_, C> {
         let stop = self.band.start(row).wrapping_add(end as usize);
         let start = stop.wrapping_sub(count);
         if let (Some(pixels), Some(depth)) = (self.band.pixels.get_mut(start..stop), self.band.depth.get_mut(start..stop)) {
-            let glass = self.band.sheet.each_ref().map(|sheet| sheet.glass);
-            let mut target = CanvasRow { pixels, depth, inv_depth, colourist: self.colourist, row: row as usize, glass };
+            let seen = self.band.sheet.each_ref().map(|sheet| Seen { glass: sheet.glass, covered: u32::MAX });
+            let mut target = CanvasRow { pixels, depth, inv_depth, colourist: self.colourist, row: row as usize, seen };
             shader.span(0, end, count, &mut target);
         }
     }
@@ -218,26 +223,34 @@ struct CanvasRow<'r, C: Pixel> {
     inv_depth: LinearWalker<1>,
     colourist: &'r Colourist<'r, C>,
     row: usize,
+    seen: IfTransparent<Seen>,
+}
+
+/// What is seen through a surface.
+#[derive(Clone, Copy)]
+struct Seen {
     /// How the surface lets through what is behind it.
-    glass: IfTransparent<Option<Glass>>,
+    glass: Option<Glass>,
+    /// The pixels of the next run that it covers.
+    covered: u32,
 }
 
 impl<C: Pixel> SpanTarget for CanvasRow<'_, C> {
-    fn visible(&mut self, first: usize, count: usize, mut covered: u32) -> u32 {
-        covered <<= 32 - count.min(CHUNK);
-        let (mut visible, is_opaque) = (0, self.glass.first().is_none_or(Option::is_none));
+    fn cover(&mut self, covered: u32) {
+        self.seen.iter_mut().for_each(|seen| seen.covered = covered);
+    }
+
+    fn visible(&mut self, first: usize, count: usize) -> u32 {
+        let mut visible = 0;
         let depth = self.depth.get_mut(first..first.wrapping_add(count)).unwrap_or_default();
-        for depth in depth.iter_mut().rev() {
+        for (k, depth) in depth.iter_mut().enumerate().rev() {
             self.inv_depth.step();
             let [inv_depth] = self.inv_depth.value();
             let inv_depth = (inv_depth >> 16) as u16;
             visible <<= 1;
-            // Its bit is the highest one that is left.
-            let is_covered = !TRANSPARENCY || covered >> 31 != 0;
-            covered <<= 1;
-            if inv_depth > *depth && is_covered {
+            if inv_depth > *depth && self.seen.iter().all(|seen| seen.covered >> k & 1 != 0) {
                 // A transparent surface hides nothing.
-                if is_opaque {
+                if self.seen.iter().all(|seen| seen.glass.is_none()) {
                     *depth = inv_depth;
                 }
                 visible |= 1;
@@ -248,7 +261,8 @@ impl<C: Pixel> SpanTarget for CanvasRow<'_, C> {
 
     fn put(&mut self, first: usize, visible: u32, intensities: &[Intensity; CHUNK]) {
         let (colourist, reflectance) = (self.colourist, &self.colourist.tables.reflectance);
-        let (pixels, row, glass) = (self.pixels.get_mut(first..).unwrap_or_default(), self.row, self.glass.first().copied().flatten());
+        let (pixels, row, glass) =
+            (self.pixels.get_mut(first..).unwrap_or_default(), self.row, self.seen.first().and_then(|seen| seen.glass));
         // One loop for each way to make a colour, so that no pixel has to ask.
         if colourist.corrects {
             let threshold = colourist.threshold(row);

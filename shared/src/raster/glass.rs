@@ -70,6 +70,7 @@ impl<C: Pixel> Sheet<C> {
     pub(crate) fn show(&self, pixels: &mut [C], depth: &[u16]) {
         let Some(glass) = self.glass else { return };
         let surface = self.pixels.iter().zip(pixels);
+        // Loops without a test draw every pixel: none of them has holes.
         if depth.is_empty() {
             surface.for_each(|(&surface, pixel)| *pixel = glass.over(surface, *pixel));
             return;

@@ -18,7 +18,14 @@ pub(crate) trait DepthTest: Walker {
     fn store(&self, depth: &mut [u16], i: usize);
 
     /// Whether pixel `i` of `depth` passes the test; if so, its depth is stored.
-    fn passes(&self, depth: &mut [u16], i: usize) -> bool;
+    #[inline(always)]
+    fn passes(&self, depth: &mut [u16], i: usize) -> bool {
+        let passes = self.is_nearer(depth, i);
+        if passes {
+            self.store(depth, i);
+        }
+        passes
+    }
 }
 
 /// The test of an inverse depth, of which the upper half is stored.
@@ -40,17 +47,6 @@ impl DepthTest for LinearWalker<1> {
             *depth = (self.value()[0] >> 16) as u16;
         }
     }
-
-    #[inline(always)]
-    fn passes(&self, depth: &mut [u16], i: usize) -> bool {
-        let inv_depth = (self.value()[0] >> 16) as u16;
-        let Some(depth) = depth.get_mut(i) else { return false };
-        let passes = inv_depth > *depth;
-        if passes {
-            *depth = inv_depth;
-        }
-        passes
-    }
 }
 
 /// No test: every pixel passes.
@@ -67,11 +63,6 @@ impl DepthTest for Constant {
 
     #[inline]
     fn store(&self, _: &mut [u16], _: usize) {}
-
-    #[inline]
-    fn passes(&self, _: &mut [u16], _: usize) -> bool {
-        true
-    }
 }
 
 /// Shades the pixels of one span that pass the depth test, from right to left.

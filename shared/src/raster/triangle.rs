@@ -420,6 +420,7 @@ impl<'b, D: Patch<Walker: DepthTest>, P: Patch, T: PixelShader<<P::Walker as Wal
                     shader: self.shader,
                     sheet: [const { None }; TRANSPARENT],
                 });
+                self.shader.take_back();
                 sheet.show(behind, depth);
                 end = first;
             }

@@ -238,6 +238,11 @@ impl<C: Pixel> ByRows for OneByOne<'_, C> {
     }
 
     #[inline(always)]
+    fn take_back(&self) {
+        self.jump(-1);
+    }
+
+    #[inline(always)]
     fn start_at(&mut self, row: i32) {
         self.colours.start_at(row);
         self.jump(row.wrapping_sub(self.row));
