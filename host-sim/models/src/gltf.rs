@@ -282,16 +282,15 @@ fn seen_through(material: &gltf::Material<'_>, texture: Option<Texture>) -> (Opt
         None => material.pbr_metallic_roughness().base_color_factor()[3],
     };
     let opacity = f64::from(opacity).clamp(0.0, 1.0);
-    let cut = |share: f64| {
-        let is_cut = |texture: &Texture| texture.image.has_opacity();
-        texture.clone().map(|texture| if is_cut(&texture) { texture.cut(share) } else { texture })
-    };
     match material.alpha_mode() {
         AlphaMode::Opaque => (texture, 0.0),
-        // The factor and the texture are multiplied, and compared with the cutoff.
-        AlphaMode::Mask => (cut(f64::from(material.alpha_cutoff().unwrap_or(0.5)) / opacity.max(1e-6)), 0.0),
+        AlphaMode::Mask => {
+            // The factor and the texture are multiplied, and compared with the cutoff.
+            let cutoff = f64::from(material.alpha_cutoff().unwrap_or(0.5)) / opacity.max(1e-6);
+            (texture.map(|texture| texture.cut(cutoff)), 0.0)
+        }
         AlphaMode::Blend => {
-            let texture = cut(0.5);
+            let texture = texture.map(|texture| texture.cut(0.5));
             let mean = texture.as_ref().map_or(1.0, |texture| texture.image.mean_opacity());
             (texture, 1.0 - opacity * mean)
         }

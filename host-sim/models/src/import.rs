@@ -105,7 +105,7 @@ pub(crate) fn made_of(contents: Contents, name: &str, weld: Weld, rules: Rules) 
     let Contents { soup, objects, mut materials, mut textures, mut ignored, mut faults, mut remarks } = contents;
     if rules.opaque {
         materials.iter_mut().flatten().for_each(|material| material.transparency = 0.0);
-        textures.iter_mut().flatten().for_each(|texture| *texture = texture.cut(0.0));
+        textures = textures.into_iter().map(|texture| Some(texture?.cut(0.0))).collect();
     }
     let (mut mesh, sources, report) = mesh::weld_with_sources(&soup, weld).with_context(|| name.to_owned())?;
     let painted = match rules.colours {

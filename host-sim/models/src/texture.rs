@@ -260,8 +260,8 @@ fn covered(own: usize, new: usize) -> Vec<Cover> {
 
 impl Texture {
     /// The texture with holes where its opacity is less than this share.
-    pub(crate) fn cut(&self, share: f64) -> Self {
-        Self { image: Arc::new(self.image.cut(share)), ..self.clone() }
+    pub(crate) fn cut(self, share: f64) -> Self {
+        if self.image.has_opacity() { Self { image: Arc::new(self.image.cut(share)), ..self } } else { self }
     }
 
     /// The place on the image at coordinates of the surface.

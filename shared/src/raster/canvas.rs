@@ -41,7 +41,7 @@ pub trait SpanShader {
 
 /// Receives the pixels of a span, in runs from right to left.
 pub trait SpanTarget {
-    /// Says which of the pixels that are tested next the surface covers, as [`covered`] finds them. Surfaces without holes need not say it.
+    /// Says which of the pixels that are tested next the surface covers: bit k is 1 for pixel `first + k`. Surfaces without holes need not say it.
     fn cover(&mut self, covered: u32);
 
     /// Tests the depth of `count` pixels, at most [`CHUNK`], from number `first` of the span on. Bit k of the result is 1 if pixel `first + k`
