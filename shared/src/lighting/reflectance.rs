@@ -150,7 +150,7 @@ pub struct Reflectance {
     pub(super) ramp: [i32; 2],
     /// Channels at full level for dither, Q0.8 scaled to the output's depth.
     pub(super) base: [u16; 3],
-    /// Not 0 if [`Self::three_channels`].
+    /// Not 0 if [`Self::three_channels`], and [`NEUTRAL`] if [`Self::is_neutral`].
     three_channels: u8,
     /// Not 0 if [`Self::has_ramp`].
     has_ramp: u8,
@@ -161,6 +161,9 @@ pub struct Reflectance {
     /// Not 0 if highlights, or lights, are computed where they cannot be seen. The feature `skips` can turn this on.
     computes_all: [u8; 2],
 }
+
+/// See [`Reflectance::is_neutral`].
+const NEUTRAL: u8 = 2;
 
 impl Reflectance {
     /// A reflectance that is not computed yet; all zeros, which takes no flash in static memory.
@@ -205,7 +208,8 @@ impl Reflectance {
         let one_channel = !COLOURS || are_one_channel && (is_gray || !(is_coloured || holds_levels && are_several));
         self.depth = depth;
         self.quarter = 0;
-        self.three_channels = u8::from(!one_channel);
+        let is_neutral = terms.iter().all(|&[r, g, b]| r == g && g == b);
+        self.three_channels = u8::from(!one_channel) << u8::from(is_neutral);
         let levels = |colour: Colour| -> [u16; 3] { if one_channel { [level(largest(colour), 8); 3] } else { zip(colour, depth, level) } };
         self.ambient = levels(terms.last().copied().unwrap_or_default()).map(i32::from);
         for (gains, terms) in self.gains.iter_mut().zip(terms.chunks_exact(2)) {
@@ -294,6 +298,13 @@ impl Reflectance {
     #[must_use]
     pub fn three_channels(&self) -> bool {
         COLOURS && self.three_channels != 0
+    }
+
+    /// Whether there are three channels although neither the material nor the light has a hue: it is a mesh with colours of its own.
+    #[inline]
+    #[must_use]
+    pub(crate) fn is_neutral(&self) -> bool {
+        self.three_channels == NEUTRAL
     }
 
     /// Whether all light without a highlight under one light is a level of the table of colours. It is in one channel, and in three unless a level

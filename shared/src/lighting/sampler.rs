@@ -1,6 +1,7 @@
 //! Textures at a pixel: the nearest texel, and its colour.
 
 use crate::{
+    arch::product::{HALVES, unsigned_product},
     features::{TEXTURED, TRANSPARENCY},
     format::{COSINE, TEXTURE},
     lighting::albedo::Albedo,
@@ -16,6 +17,10 @@ pub type IfTextured<T> = [T; TEXTURED];
 /// A place in a texture: columns to the right and rows downwards, in widths and heights of it, Q4.12.
 pub(crate) type Place = [i32; 2];
 
+/// A place of which the number of a texel is cut by three operations: the row's number stands in the uppermost bits of the second word, and the column's
+/// number in the first word right below these bits. What stands above it is not used.
+pub(crate) type Aligned = [u32; 2];
+
 /// Fraction bits of a walked place, which is a sixteenth of [`Place`] in the format of cosines.
 const WALKED: u32 = COSINE - 4;
 /// Bits by which a [`Place`] at a corner is shifted to have [`WALKED`] fraction bits.
@@ -26,32 +31,13 @@ pub(crate) const FINER: u32 = WALKED - TEXTURE;
 pub struct Sampler<'f> {
     palette: &'f [Colour],
     texels: &'f [u8],
-    column: Digits,
-    row: Digits,
+    /// The bits of an aligned place that the number of a row takes.
+    rows: u32,
     /// The binary logarithms of width and height.
     size: [u8; 2],
     is_gray: bool,
     /// Whether it may have holes.
     pub(crate) has_holes: bool,
-}
-
-/// Where in a walked place the number of a column or of a row stands.
-#[derive(Clone, Copy, Debug)]
-struct Digits {
-    shift: u32,
-    mask: u32,
-}
-
-impl Digits {
-    /// A number of so many bits, which is to stand `left` bits higher in the number of a texel.
-    fn new(bits: u8, left: u8) -> Self {
-        Self { shift: WALKED - u32::from(bits) - u32::from(left), mask: ((1 << bits) - 1) << left }
-    }
-
-    #[inline(always)]
-    fn of(self, place: u32) -> u32 {
-        (place >> (self.shift & 31)) & self.mask
-    }
 }
 
 /// The texture of a triangle.
@@ -72,28 +58,49 @@ impl<'f> Sampler<'f> {
     }
 
     fn of(palette: &'f [Colour], texels: &'f [u8], size: [u8; 2], is_gray: bool) -> Self {
-        let [width, height] = size;
-        Self { palette, texels, column: Digits::new(width, 0), row: Digits::new(height, width), size, is_gray, has_holes: false }
+        let [_, height] = size;
+        Self { palette, texels, rows: !(u32::MAX >> height), size, is_gray, has_holes: false }
     }
 
-    /// The colour of the texel at a walked place, which is rounded down to whole texels.
+    /// A walked place with [`WALKED`] fraction bits.
     #[inline(always)]
-    pub(crate) fn texel(&self, [u, v]: [u32; 2]) -> Colour {
-        let texel = (self.row.of(v) | self.column.of(u)) as usize;
+    pub(crate) fn aligned(&self, [u, v]: [u32; 2]) -> Aligned {
+        let [_, height] = self.size;
+        [u << (32 - WALKED) >> (height & 31), v << (32 - WALKED)]
+    }
+
+    /// How many bits to the left places with so many fraction bits are shifted to be [`Aligned`].
+    #[inline]
+    pub(crate) fn alignment(&self, fraction: u32) -> [i32; 2] {
+        let [_, height] = self.size;
+        [32 - fraction as i32 - i32::from(height), 32 - fraction as i32]
+    }
+
+    /// The colour of the texel at a place, which is rounded down to whole texels.
+    #[inline(always)]
+    pub(crate) fn texel(&self, [u, v]: Aligned) -> Colour {
+        let digits = u ^ (u ^ v) & self.rows;
+        // A share of the number of texels, which is a power of two.
+        let texel = if HALVES {
+            let [width, height] = self.size;
+            (digits >> 1 >> (31 - u32::from(width) - u32::from(height))) as usize
+        } else {
+            (unsigned_product(digits, self.texels.len() as u32) >> 32) as usize
+        };
         // A checked stream has all texels, and all of their colours.
         let colour = self.texels.get(texel).and_then(|&index| self.palette.get(usize::from(index)));
         *colour.unwrap_or(&Colour::new([0; 3]))
     }
 
-    /// Whether the texture has no hole at a walked place.
+    /// Whether the texture has no hole at a place.
     #[inline(always)]
-    pub(crate) fn covers(&self, place: [u32; 2]) -> bool {
+    pub(crate) fn covers(&self, place: Aligned) -> bool {
         !TRANSPARENCY || self.texel(place).hole == 0
     }
 
-    /// The colour at a walked place, as that of a surface.
+    /// The colour at a place, as that of a surface.
     #[inline]
-    pub(crate) fn at(&self, place: [u32; 2]) -> Albedo {
+    pub(crate) fn at(&self, place: Aligned) -> Albedo {
         Albedo::new(self.texel(place), self.is_gray)
     }
 
@@ -119,7 +126,7 @@ mod tests {
         let palette = core::array::from_fn(|k| Colour::new([k as u8; 3]));
         let at = |u: f64, v: f64| {
             let place = [u, v].map(|c| (c * f64::from(1u32 << WALKED)) as i64 as u32);
-            let [share, ..] = texture(&palette).at(place).shares();
+            let [share, ..] = texture(&palette).at(texture(&palette).aligned(place)).shares();
             share / 257
         };
         assert_eq!([at(0.0, 0.0), at(0.6, 0.0), at(0.0, 0.3), at(0.99, 0.99)], [0, 1, 2, 7]);

@@ -89,7 +89,9 @@ fn corner_colours(MeshColours { palette, corners }: &MeshColours<'_>, triangle: 
 }
 
 fn places_at(&TextureCorners([a, c, b]): &TextureCorners, by: usize) -> Option<[Place; 3]> {
-    Some(turn([a, b, c].map(|place| place.map(i32::from)), by))
+    let [a, b, c] = turn([a, b, c], by);
+    let wide = |[u, v]: [u16; 2]| [u.into(), v.into()];
+    Some([wide(a), wide(b), wide(c)])
 }
 
 impl Paint {

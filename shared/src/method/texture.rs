@@ -10,22 +10,23 @@
 
 use crate::{
     features::{PERSPECTIVE, TEXTURES, TRANSPARENCY},
-    format::{BIAS, CHANNEL, FULL, INTENSITY, Intensity, LEVEL, WALK},
+    format::{BIAS, CHANNEL, FULL, INTENSITY, Intensity, LEVEL, TEXTURE, WALK},
     interpolate::{
         Patch, Walker,
         by_column::ByColumn,
         field::{Field, Nodes},
         perspective::PerspectivePatch,
+        plane::Plane,
         quadric::Quadric,
     },
     lighting::{
         albedo::{Albedo, Parts, SHARE},
         constant_lights::COLOUR,
-        sampler::{FINER, IfTextured, Sampler, Textured},
+        sampler::{Aligned, FINER, IfTextured, Sampler, Textured},
     },
     math::vector::{map, zip},
     method::{
-        EXTRA, IntensityShader, LinearWay, Middles, RANGE, Shading, TriangleSetup, bias, channels, largest_range,
+        EXTRA, IntensityShader, LinearWay, Middles, RANGE, Shading, TriangleSetup, bias, channels, largest, largest_range,
         node::mixed,
         perspective,
         products::{LinearNodes, QuadraticNodes, fitted, linear, quadratic},
@@ -63,6 +64,11 @@ pub enum PlaceWalker {
     InSpace(<PerspectivePatch<LinearNodes<2>> as Patch>::Walker),
 }
 
+/// Bits of the range of a place at corners.
+const PLACE: u32 = TEXTURE + 4;
+/// Fraction bits that a place which a plane interpolates has more than at corners.
+const MORE: u32 = 16;
+
 /// The largest error of a place on the screen: a quarter of a texel, in the unit of [`Sampler::range`].
 const MOST: u32 = 2;
 
@@ -87,7 +93,7 @@ impl TriangleSetup<'_> {
     /// The place in a texture over the triangle.
     #[inline(never)]
     fn place_patch(&self, texture: &Textured<'_>) -> PlacePatch {
-        if let Some(quadric) = self.place_on_screen(texture) {
+        if let Some(quadric) = by_quadratic(self, texture, self.way_of_places(texture)) {
             return PlacePatch::OnScreen(quadric);
         }
         let surface = linear(corner_nodes(texture)).surface();
@@ -106,18 +112,17 @@ impl TriangleSetup<'_> {
     #[inline(never)]
     pub(crate) fn sampled(&self) -> Option<Sampled<Placed<'_, ByColumn<Quadric<2>>>>> {
         let texture = self.texture.first()?.as_ref()?;
-        Some(Sampled(Placed { place: ByColumn(self.place_on_screen(texture)?), sampler: texture.sampler }))
+        Some(Sampled(Placed { place: ByColumn(by_quadratic(self, texture, self.way_of_places(texture))?), sampler: texture.sampler }))
     }
 
-    /// The place in a texture as a quadratic on the screen; `None` if it would be too far off.
-    fn place_on_screen(&self, texture: &Textured<'_>) -> Option<Quadric<2>> {
-        let shares = match self.way_of_places(texture) {
-            LinearWay::Plane => Middles::IN_SPACE.shares(),
-            LinearWay::Quadratic(shares) => shares,
-            LinearWay::InSpace => return None,
-        };
-        Some(fitted(&place_nodes(texture, shares), self.gradients))
+    /// The place in a texture as a plane on the screen.
+    #[inline(never)]
+    fn place_by_plane(&self, Textured { sampler, places, .. }: &Textured<'_>) -> Plane<2> {
+        let [[u0, v0], [u1, v1], [u2, v2]] = *places;
+        let plane = Nodes::<3, 2, PLACE>::new([[u0, u1, u2], [v0, v1, v2]], MORE).fit(self.gradients);
+        plane.shifted(sampler.alignment(TEXTURE + MORE))
     }
+
 
     /// Draws the triangle, whose light is `field`, by `shader` with the texture. Returns the number of pixels drawn; `None` if it has no texture.
     pub(crate) fn draw_textured<F: Field, S>(&self, field: &F, shader: S, canvas: &mut dyn Canvas) -> Option<u32>
@@ -163,7 +168,12 @@ const QUARTER: u32 = 2;
 
 /// These levels over a power of two, as far as the result is no more than full intensity.
 fn part(levels: [i32; 3], power: u32) -> [i32; 3] {
-    map(levels, |level| ((level + (1 << (power - 1))) >> power).min(FULL))
+    map(levels, |level| share_of(level, power))
+}
+
+/// See [`part`].
+fn share_of(level: i32, power: u32) -> i32 {
+    ((level + (1 << (power - 1))) >> power).min(FULL)
 }
 
 /// A walked sixteenth as an intensity, which may be beyond black and white.
@@ -205,41 +215,89 @@ impl IntensityShader<(([u32; 3], [u32; 3]), [u32; 2])> for OnTexture<'_, Apart> 
     }
 }
 
-/// Draws a triangle with a texture by a loop of its pixel format: interpolated `parts` of light, and a place by a quadratic. `None` if the general loop has
-/// to draw it: in greys, under more than full intensity, and where a plane on the screen is too far off for the light, or a quadratic for the place.
+/// Draws a triangle with a texture by a loop of its pixel format: interpolated `parts` of light, and a place by a plane or a quadratic. `None` if the general
+/// loop has to draw it: in greys, under more than full intensity, and where a plane on the screen is too far off for the light, or a quadratic for the
+/// place.
 #[inline(never)]
 pub(crate) fn fill<C: Pixel>(
     setup: &TriangleSetup<'_>,
     shading: &Shading<'_>,
-    parts: impl FnOnce() -> [Parts; 3],
+    parts: &[Parts; 3],
     band: &mut Band<'_, C>,
 ) -> Option<u32> {
     let texture = setup.texture.first()?.as_ref()?;
+    if C::GRAY {
+        return None;
+    }
     let way = setup.way_of_places(texture);
-    let parts = parts();
-    let light = parts.map(|parts| map(part(parts.diffuse, QUARTER), scaled));
-    let highlights = parts.map(|parts| parts.specular);
+    if shading.reflectance.is_neutral() && NeutralTexels::<C>::EXISTS {
+        return fill_neutral(setup, shading, (texture, way), parts, band);
+    }
+    let light = map(parts.each_ref(), |parts| map(part(parts.diffuse, QUARTER), scaled));
+    let highlights = map(parts.each_ref(), |parts| parts.specular);
     let range = || largest_range(light).saturating_mul(1 << QUARTER).max(largest_range(highlights));
-    let is_matt = highlights == [[0; 3]; 3];
-    // The sum at a pixel is less than 512.
-    let most = if is_matt { 510 } else { 257 } << LEVEL >> QUARTER;
-    let is_bright =
-        light.as_flattened().iter().any(|&quarter| quarter >= most) || highlights.as_flattened().iter().any(|&level| level > FULL);
-    if C::GRAY || is_bright || !matches!(setup.linear_way(range), LinearWay::Plane) {
+    let [red, green, blue] = [0, 1, 2].map(|k| is_bright(map(light, |light| light[k]), map(highlights, |level| level[k])));
+    if red || green || blue || !matches!(setup.linear_way(range), LinearWay::Plane) {
         return None;
     }
     let fit = |levels| Nodes::<3, 3, RANGE>::new(channels(levels), CHANNEL - LEVEL).fit(setup.gradients);
-    let sampler = texture.sampler;
-    let plane = || Placed { place: fitted(&linear(corner_nodes(texture)), setup.gradients), sampler };
-    let quadric = |shares| Placed { place: ByColumn(fitted(&place_nodes(texture, shares), setup.gradients)), sampler };
-    let pixels = Texels::<C>::new(sampler, shading.reflectance.quarter());
-    Some(match (way, is_matt) {
-        (LinearWay::InSpace, _) => return None,
-        (LinearWay::Plane, true) => setup.fill(|| (fit(light), plane()), pixels, band),
-        (LinearWay::Plane, false) => setup.fill(|| ((fit(light), fit(highlights)), plane()), pixels, band),
-        (LinearWay::Quadratic(shares), true) => setup.fill(|| (fit(light), quadric(shares)), pixels, band),
-        (LinearWay::Quadratic(shares), false) => setup.fill(|| ((fit(light), fit(highlights)), quadric(shares)), pixels, band),
+    let place = Placed::<_, false> { place: ByColumn(by_quadratic(setup, texture, way)?), sampler: texture.sampler };
+    let pixels = Texels::<C>::new(texture.sampler, shading.reflectance.quarter());
+    Some(if highlights == [[0; 3]; 3] {
+        setup.fill(|| (fit(light), place), pixels, band)
+    } else {
+        setup.fill(|| ((fit(light), fit(highlights)), place), pixels, band)
     })
+}
+
+/// [`fill`] under light without a hue: one level of light, and one of highlights, is interpolated instead of three.
+#[inline(never)]
+fn fill_neutral<C: Pixel>(
+    setup: &TriangleSetup<'_>,
+    shading: &Shading<'_>,
+    (texture, way): (&Textured<'_>, LinearWay),
+    parts: &[Parts; 3],
+    band: &mut Band<'_, C>,
+) -> Option<u32> {
+    let light = map(parts.each_ref(), |Parts { diffuse: [_, green, _], .. }| scaled(share_of(*green, QUARTER)));
+    let highlights = map(parts.each_ref(), |Parts { specular: [_, green, _], .. }| *green);
+    let spread = |[a, b, c]: [i32; 3]| (a.max(b).max(c) - a.min(b).min(c)) as u32;
+    let range = || spread(light).saturating_mul(1 << QUARTER).max(spread(highlights));
+    if is_bright(light, highlights) || !matches!(setup.linear_way(range), LinearWay::Plane) {
+        return None;
+    }
+    let gradients = setup.gradients;
+    let matt = || Nodes::<3, 1, RANGE>::new([light], CHANNEL - LEVEL).fit(gradients);
+    let shiny = || Nodes::<3, 2, RANGE>::new([light, highlights], CHANNEL - LEVEL).fit(gradients);
+    let sampler = texture.sampler;
+    let plane = || Placed::<_, true> { place: setup.place_by_plane(texture), sampler };
+    let pixels = NeutralTexels::<C>::new(sampler, shading.reflectance.quarter());
+    Some(match (way, largest(&highlights) == 0) {
+        (LinearWay::Plane, true) => setup.fill(|| (matt(), plane()), pixels, band),
+        (LinearWay::Plane, false) => setup.fill(|| (shiny(), plane()), pixels, band),
+        (_, is_matt) => {
+            let place = Placed::<_, false> { place: ByColumn(by_quadratic(setup, texture, way)?), sampler };
+            if is_matt { setup.fill(|| (matt(), place), pixels, band) } else { setup.fill(|| (shiny(), place), pixels, band) }
+        }
+    })
+}
+
+/// The place on the screen as a quadratic, also where it is a plane; `None` where only the point in space will do.
+fn by_quadratic(setup: &TriangleSetup<'_>, texture: &Textured<'_>, way: LinearWay) -> Option<Quadric<2>> {
+    let shares = match way {
+        LinearWay::Plane => Middles::IN_SPACE.shares(),
+        LinearWay::Quadratic(shares) => shares,
+        LinearWay::InSpace => return None,
+    };
+    Some(fitted(&place_nodes(texture, shares), setup.gradients))
+}
+
+/// Whether quarters of light and levels of highlights may be too bright for loops: the sum at a pixel has to be less than 512.
+#[inline(never)]
+fn is_bright(light: [i32; 3], highlights: [i32; 3]) -> bool {
+    let brightest = largest(&highlights);
+    let most = if brightest == 0 { 510 } else { 257 } << LEVEL >> QUARTER;
+    largest(&light) >= most || brightest > FULL
 }
 
 /// A level that is multiplied by a channel of 0 to 255 and divided by 256.
@@ -304,17 +362,78 @@ impl<C: Pixel> PixelShader<(([u32; 3], [u32; 3]), [u32; 2])> for Texels<'_, C> {
     }
 }
 
+/// [`Texels`] under light without a hue, of which one level is walked: that of green.
+#[derive(Clone, Copy)]
+struct NeutralTexels<'f, C> {
+    sampler: &'f Sampler<'f>,
+    /// What is added to levels of red and blue, and of green, before they are rounded down.
+    rounding: ByTurns<(i32, i32), C>,
+}
+
+impl<'f, C: Pixel> NeutralTexels<'f, C> {
+    /// Whether the format has as many bits of red as of blue, and as many of green or one more.
+    const EXISTS: bool = matches!(C::LEVELS, [red, green, blue] if red == blue && (green == red || green == 6 && red == 5));
+
+    fn new(sampler: &'f Sampler<'f>, quarter: i32) -> Self {
+        let rounding = Texels::<C>::new(sampler, quarter).rounding.map(|[red, green, _]| (red, green));
+        Self { sampler, rounding }
+    }
+
+    /// A level of red and blue by that of green. They are as 248 to 252 if green has 6 bits and they have 5: this is off by 2^-12.
+    #[inline(always)]
+    fn outer(level: u32) -> u32 {
+        let [red, green, _] = C::LEVELS;
+        if red == green { level } else { level.wrapping_sub(level >> 6) }
+    }
+
+    /// The colour where the texture reflects this much light, as [`scaled`] quarters, and where these levels of highlights are added.
+    #[inline(always)]
+    fn colour(&self, quarter: u32, highlight: u32, place: Aligned) -> C {
+        let Colour { channels: [red, green, blue], .. } = self.sampler.texel(place);
+        let (more, more_green) = self.rounding.now();
+        let quarter = quarter >> (CHANNEL - 16);
+        let level = |channel: u8, quarter: u32, more: i32| (quarter.wrapping_mul(channel.into()) as i32).wrapping_add(more);
+        let (outer, more) = (Self::outer(quarter), more.wrapping_add(Self::outer(highlight) as i32));
+        C::mixed([level(red, outer, more), level(green, quarter, more_green.wrapping_add(highlight as i32)), level(blue, outer, more)])
+    }
+}
+
+impl<C: Pixel> ByRows for NeutralTexels<'_, C> {
+    #[inline(always)]
+    fn step_row(&mut self) {
+        self.rounding.step_row();
+    }
+}
+
+impl<C: Pixel> PixelShader<([u32; 1], Aligned)> for NeutralTexels<'_, C> {
+    type Pixel = C;
+
+    #[inline(always)]
+    fn shade(&self, ([light], place): ([u32; 1], Aligned)) -> C {
+        self.colour(light, 0, place)
+    }
+}
+
+impl<C: Pixel> PixelShader<([u32; 2], Aligned)> for NeutralTexels<'_, C> {
+    type Pixel = C;
+
+    #[inline(always)]
+    fn shade(&self, ([light, highlight], place): ([u32; 2], Aligned)) -> C {
+        self.colour(light, highlight, place)
+    }
+}
+
 /// The place in a texture, by a polynomial. Where the texture has a hole, the surface covers no pixel.
 #[derive(Clone, Copy, Debug)]
-pub struct Placed<'f, P> {
-    /// The place.
+pub struct Placed<'f, P, const ALIGNED: bool = false> {
+    /// The place, which is [`Aligned`] or becomes it at each pixel.
     pub place: P,
     /// The texture.
     pub sampler: &'f Sampler<'f>,
 }
 
-impl<'f, P: Patch<Walker: Walker<Value = [u32; 2]>>> Patch for Placed<'f, P> {
-    type Walker = Placed<'f, P::Walker>;
+impl<'f, P: Patch<Walker: Walker<Value = [u32; 2]>>, const ALIGNED: bool> Patch for Placed<'f, P, ALIGNED> {
+    type Walker = Placed<'f, P::Walker, ALIGNED>;
 
     #[inline(always)]
     fn jump(&mut self, rows: i32) {
@@ -335,8 +454,8 @@ impl<'f, P: Patch<Walker: Walker<Value = [u32; 2]>>> Patch for Placed<'f, P> {
     const WORDS: usize = 1 << 8;
 }
 
-impl<W: Walker<Value = [u32; 2]>> Walker for Placed<'_, W> {
-    type Value = [u32; 2];
+impl<W: Walker<Value = [u32; 2]>, const ALIGNED: bool> Walker for Placed<'_, W, ALIGNED> {
+    type Value = Aligned;
 
     #[inline(always)]
     fn step(&mut self) {
@@ -344,8 +463,8 @@ impl<W: Walker<Value = [u32; 2]>> Walker for Placed<'_, W> {
     }
 
     #[inline(always)]
-    fn value(&self) -> [u32; 2] {
-        self.place.value()
+    fn value(&self) -> Aligned {
+        if ALIGNED { self.place.value() } else { self.sampler.aligned(self.place.value()) }
     }
 
     const HAS_HOLES: bool = TRANSPARENCY;
@@ -357,7 +476,7 @@ impl<W: Walker<Value = [u32; 2]>> Walker for Placed<'_, W> {
 
     #[inline(always)]
     fn covers(&self) -> bool {
-        self.sampler.covers(self.place.value())
+        self.sampler.covers(self.value())
     }
 }
 

@@ -198,11 +198,12 @@ impl<const QUADRATICS: bool> Loops for Auto<QUADRATICS> {
         // Under two lights vertices have levels of all channels, where there are three.
         let under_two = THREE && shading.constant.is_none();
         if setup.has_texture() {
-            return match choice {
-                Choice::Solid(_) => texture::fill(setup, shading, || [half_way_parts(setup, &shading.reflectance); 3], band),
-                Choice::Linear(_) => texture::fill(setup, shading, || gouraud::corner_parts(setup, shading), band),
-                Choice::Quadratic | Choice::Cosines | Choice::Phong => by::<Phong, _>(setup, shading, tables, band),
+            let parts = match choice {
+                Choice::Solid(_) => [half_way_parts(setup, &shading.reflectance); 3],
+                Choice::Linear(_) => gouraud::corner_parts(setup, shading),
+                Choice::Quadratic | Choice::Cosines | Choice::Phong => return by::<Phong, _>(setup, shading, tables, band),
             };
+            return texture::fill(setup, shading, &parts, band);
         }
         match choice {
             Choice::Solid(raise) => Some(setup.fill(|| Constant, Solid::face(solid(setup, shading, raise, tables)), band)),

@@ -19,7 +19,7 @@ use crate::{
         material_tables::MaterialTables,
         reflectance::Reflectance,
     },
-    math::vector::zip,
+    math::vector::{map, zip},
     method::{
         Facts, LinearWay, Loops, Method, RANGE, Shading, Style, TriangleSetup, VertexLight, channels, fit_levels, largest, largest_range,
         node::mixed, texture,
@@ -73,7 +73,7 @@ impl Loops for Gouraud {
     ) -> Option<u32> {
         let [a, b, c] = setup.corners;
         if setup.has_texture() {
-            return texture::fill(setup, shading, || corner_parts(setup, shading), band);
+            return texture::fill(setup, shading, &corner_parts(setup, shading), band);
         }
         if PERSPECTIVE {
             match setup.linear_way(|| largest_range(corner_levels(setup, shading))) {
@@ -204,10 +204,13 @@ fn corner_levels(setup: &TriangleSetup<'_>, shading: &Shading<'_>) -> [[i32; 3];
 }
 
 /// The parts of light at the corners of a triangle with a texture.
+#[inline(never)]
 pub(crate) fn corner_parts(setup: &TriangleSetup<'_>, shading: &Shading<'_>) -> [Parts; 3] {
-    setup.corners.map(|corner| match (shading.constant, corner.light) {
-        (Some(_), [cosine, _, highlight, _]) => shading.reflectance.reflected_parts(cosine, highlight as u32),
-        (None, packed) => Parts::unpacked(packed),
+    if shading.constant.is_none() {
+        return map(setup.corners, |corner| Parts::unpacked(corner.light));
+    }
+    map(setup.corners, |ScreenVertex { light: [cosine, _, highlight, _], .. }| {
+        shading.reflectance.reflected_parts(*cosine, *highlight as u32)
     })
 }
 
