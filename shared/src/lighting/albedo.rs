@@ -117,6 +117,12 @@ impl Albedo {
         r.max(g).max(b)
     }
 
+    /// The colour of three corners; `None` if they differ.
+    #[inline(always)]
+    pub(crate) fn one(&[a, b, c]: &[Self; 3]) -> Option<Self> {
+        (a == b && b == c).then_some(a)
+    }
+
     /// The colour whose channels lie half-way between the extremes at three corners.
     #[inline]
     pub(crate) fn half_way(corners: &[Self; 3]) -> Self {

@@ -464,6 +464,12 @@ impl<C: Pixel> LitColours for SummedRgb<'_, C> {
 }
 
 impl<C: Pixel> SummedRgb<'_, C> {
+    /// The colours where ambient light is that of these sums, for even rows and for odd ones.
+    #[inline(always)]
+    pub(crate) fn in_ambient<'s>(&self, [even, odd]: &'s [Sums; 2]) -> SummedRgb<'s, C> {
+        SummedRgb { ambient: ByTurns::new([even, odd]), bits: self.bits }
+    }
+
     /// The levels of this diffuse light and of ambient light.
     #[inline(always)]
     pub(crate) fn levels(&self, Summed([red, green, blue]): Summed) -> [i32; 3] {

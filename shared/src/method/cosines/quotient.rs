@@ -188,9 +188,8 @@ fn draw_coloured<C: Pixel>(
     if !is_plane(setup, albedos) {
         return None;
     }
-    let [a, b, c] = *albedos;
-    if a == b && b == c {
-        let sums = &tables.painted_sums(a);
+    if let Some(albedo) = Albedo::one(albedos) {
+        let sums = &tables.painted_sums(albedo);
         if setup.leaves_out_highlight(tables.reflectance, &cosines[1]) {
             setup.count(band.top, &mut band.counts.without_highlight, 1);
             let (colours, at) = (OneLightRgb::of(sums), Quotient(HalfRsqrt::get()));

@@ -4,7 +4,7 @@
 //! Cost: that of three planes and a root for the sum; five products for each light that ends, and for each highlight the same and its table.
 
 use crate::{
-    arch::product::upper,
+    arch::product::{product, upper},
     features::VERTEX_COLOURS,
     format::MAX_LIGHTS,
     interpolate::{
@@ -14,6 +14,7 @@ use crate::{
         plane::Plane,
     },
     lighting::{
+        albedo::{Albedo, SHARE},
         constant_lights::{DiffuseOnly, LitColours, SUMMED, Summed, SummedRgb, cosine},
         material_tables::MaterialTables,
         summed::{Sides, part},
@@ -134,6 +135,17 @@ impl SummedLights {
         }
         lights
     }
+
+    /// These lights on a surface of one colour.
+    #[inline(never)]
+    fn painted(mut self, albedo: Albedo) -> Self {
+        let reflected = |level: i32, share: i32| ((product(level, share) + (1 << (SHARE - 1))) >> SHARE) as i32;
+        self.corners = zip(self.corners, albedo.shares(), |channel, share| map(channel, |level| reflected(level, share)));
+        for term in &mut self.ending {
+            term.factors = zip(term.factors, albedo.shares(), reflected);
+        }
+        self
+    }
 }
 
 /// Draws `setup`. `None` if it has a highlight that is too steep.
@@ -145,8 +157,15 @@ pub(super) fn draw<C: Pixel>(
     tables: MaterialTables<'_, C>,
     band: &mut Band<'_, C>,
 ) -> Option<u32> {
-    let (lookup, colours) = (QuotientLookup::new(tables.reflectance.table()?), tables.summed_rgb());
-    let lights = &SummedLights::on(setup, shading, lengths, lookup, tables);
+    let (lookup, mut colours) = (QuotientLookup::new(tables.reflectance.table()?), tables.summed_rgb());
+    let one_colour = if setup.has_texture() { None } else { setup.albedos().and_then(Albedo::one) };
+    let (mut lights, ambient);
+    lights = SummedLights::on(setup, shading, lengths, lookup, tables);
+    if VERTEX_COLOURS && let Some(albedo) = one_colour {
+        ambient = tables.painted_sums(albedo);
+        (lights, colours) = (lights.painted(albedo), colours.in_ambient(&ambient));
+    }
+    let lights = &lights;
     if is_steep(shading.exponent) && lights.is_visible {
         return None;
     }
@@ -159,7 +178,7 @@ pub(super) fn draw<C: Pixel>(
         let sampled = setup.sampled()?;
         return Some(setup.fill(|| (Column, (sampled, ByColumn(patch()))), shader, band));
     }
-    if VERTEX_COLOURS && let Some(albedos) = setup.albedos() {
+    if VERTEX_COLOURS && let (Some(albedos), None) = (setup.albedos(), one_colour) {
         return is_plane(setup, albedos).then(|| setup.fill(|| (Column, ByColumn((colour(setup, albedos), patch()))), shader, band));
     }
     if lights.ending.is_empty() && lights.highlights.is_empty() {
