@@ -12,7 +12,6 @@ use crate::{
     faults,
     fields::quoted,
     mesh::{Corner, Face, Smoothing, Submesh},
-    mtl::Material,
     number::grouped,
     obj::LARGEST,
     text,
@@ -273,9 +272,7 @@ impl<'a> Builder<'a> {
         let (material, texture) = match look {
             Look::None => (None, None),
             Look::Material { model, group, element } => match self.models[model].groups.get(&group) {
-                Some(Group::Materials(materials)) => {
-                    (materials.get(element as usize).map(|(name, colour)| Material::matt(name.clone(), *colour)), None)
-                }
+                Some(Group::Materials(materials)) => (materials.get(element as usize).cloned(), None),
                 _ => (None, None),
             },
             Look::Texture { model, texture } => (None, self.texture(model, texture)),

@@ -3,7 +3,7 @@
 //! The specifications are those of the 3MF Consortium: Core 1.3, the colours and textures of Materials 1.2, and the paths of Production 1.1.
 
 use super::xml::{Attribute, attributes, needed};
-use crate::{fields::quoted, number::grouped, transform::Transform, vector::V3};
+use crate::{fields::quoted, mtl::Material, number::grouped, transform::Transform, vector::V3};
 use anyhow::{Context, Result, bail, ensure};
 use quick_xml::{
     Reader,
@@ -86,8 +86,7 @@ pub(super) struct Paint {
 /// Properties that surfaces can have.
 #[derive(Debug)]
 pub(super) enum Group {
-    /// Materials, with names and colours.
-    Materials(Vec<(String, V3)>),
+    Materials(Vec<Material>),
     Colours(Vec<V3>),
     /// Places on a texture.
     Places {
@@ -308,29 +307,26 @@ impl Model {
 
     /// An element of a property group.
     fn property(&mut self, id: u32, element: &str, tag: &BytesStart<'_>) -> Result<()> {
-        let is_opaque = match (self.groups.get_mut(&id), element) {
+        match (self.groups.get_mut(&id), element) {
             (Some(Group::Materials(materials)), "base") => {
                 let [name, colour] = attributes(tag, ["name", "displaycolor"])?;
-                let (colour, is_opaque) = needed(colour, "displaycolor")?.colour()?;
+                let (colour, opacity) = needed(colour, "displaycolor")?.colour()?;
                 let name = name.as_ref().map(Attribute::text).unwrap_or_default();
-                materials.push((name.chars().take(LONGEST).collect(), colour));
-                is_opaque
+                let name = name.chars().take(LONGEST).collect();
+                materials.push(Material { transparency: 1.0 - opacity, ..Material::matt(name, colour) });
             }
             (Some(Group::Colours(colours)), "color") => {
                 let [colour] = attributes(tag, ["color"])?;
-                let (colour, is_opaque) = needed(colour, "color")?.colour()?;
+                let (colour, opacity) = needed(colour, "color")?.colour()?;
                 colours.push(colour);
-                is_opaque
+                // The specification has it that these colours are opaque unless they are mixed with others.
+                self.ignored.extend((opacity < 1.0).then_some("opacity of groups of colours"));
             }
             (Some(Group::Places { places, .. }), "tex2coord") => {
                 let [u, v] = attributes(tag, ["u", "v"])?;
                 places.push([needed(u, "u")?.number()?, needed(v, "v")?.number()?]);
-                true
             }
-            _ => true,
-        };
-        if !is_opaque {
-            self.ignored.insert("transparency");
+            _ => {}
         }
         Ok(())
     }

@@ -77,13 +77,13 @@ impl Attribute<'_> {
         numbers.with_context(|| self.wrong(&format!("{N} numbers with blanks between them")))
     }
 
-    /// A colour of sRGB, from 0 to 1, and whether it is opaque: `#RRGGBB` or `#RRGGBBAA`.
-    pub(super) fn colour(&self) -> Result<([f64; 3], bool)> {
+    /// A colour of sRGB and its opacity, from 0 to 1: `#RRGGBB` or `#RRGGBBAA`.
+    pub(super) fn colour(&self) -> Result<([f64; 3], f64)> {
         let wrong = || self.wrong("a colour, which is # and 6 or 8 hexadecimal digits");
         let digits = self.value.trim().strip_prefix('#').filter(|digits| digits.bytes().all(|digit| digit.is_ascii_hexdigit()));
         let digits = digits.filter(|digits| [6, 8].contains(&digits.len())).with_context(wrong)?;
-        let channel = |k: usize| u8::from_str_radix(&digits[2 * k..2 * k + 2], 16).ok().with_context(wrong);
-        let is_opaque = digits.len() == 6 || channel(3)? == 255;
-        Ok(([channel(0)?, channel(1)?, channel(2)?].map(|c| f64::from(c) / 255.0), is_opaque))
+        let channel = |k: usize| u8::from_str_radix(&digits[2 * k..2 * k + 2], 16).map(|c| f64::from(c) / 255.0).ok().with_context(wrong);
+        let opacity = if digits.len() == 6 { 1.0 } else { channel(3)? };
+        Ok(([channel(0)?, channel(1)?, channel(2)?], opacity))
     }
 }
