@@ -1,6 +1,6 @@
 //! The contents of a model file of any format, as a reader hands them over.
 
-use crate::{faults::Faults, mesh::Soup, mtl::Material, texture::Texture};
+use crate::{faults::Faults, mesh::Soup, mtl::Material, paint::Emission, texture::Texture};
 use std::collections::BTreeSet;
 
 /// What becomes of the colours that a file has in textures and at its vertices.
@@ -41,6 +41,8 @@ pub struct Contents {
     pub materials: Vec<Option<Material>>,
     /// The textures of the materials, as far as they are known.
     pub(crate) textures: Vec<Option<Texture>>,
+    /// Where materials send out their light, as far as a file says it. Elsewhere the colours of triangles multiply this light, as they do all light.
+    pub(crate) emissions: Vec<Emission>,
     /// Contents that are left out, in words.
     pub ignored: BTreeSet<&'static str>,
     /// Wrong elements that are left out.

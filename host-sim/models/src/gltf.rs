@@ -11,8 +11,9 @@ use crate::{
     faults::{UNUSED_NORMAL, UNUSED_POSITION},
     files::Folder,
     mesh::{Corner, Face, Smoothing, Submesh},
-    mtl::{Material, UNEVEN_LIGHT},
+    mtl::Material,
     obj::LARGEST,
+    paint::Emission,
     pbr,
     texture::{Images, Texture},
     transform::Transform,
@@ -76,6 +77,9 @@ pub(crate) fn parse(bytes: &[u8], folder: &Folder, colours: Colours) -> Result<C
     Ok(reader.scene)
 }
 
+/// Extensions of materials that are read.
+const OF_MATERIALS: [&str; 2] = ["KHR_materials_pbrSpecularGlossiness", "KHR_materials_emissive_strength"];
+
 /// Contents of a document that are left out, without the contents of its meshes.
 fn besides(document: &Document) -> BTreeSet<&'static str> {
     let mut ignored = BTreeSet::new();
@@ -88,7 +92,7 @@ fn besides(document: &Document) -> BTreeSet<&'static str> {
     note(document.cameras().next().is_some(), "cameras");
     note(document.extensions_used().any(|name| name == "KHR_lights_punctual"), "lights");
     note(document.extensions_used().any(|name| name == "EXT_mesh_gpu_instancing"), "instances of meshes");
-    let of_materials = |name: &str| name.starts_with("KHR_materials_") && name != "KHR_materials_pbrSpecularGlossiness";
+    let of_materials = |name: &str| name.starts_with("KHR_materials_") && !OF_MATERIALS.contains(&name);
     note(document.extensions_used().any(of_materials), "extensions of materials");
     ignored
 }
@@ -162,7 +166,7 @@ impl Reader<'_> {
         let remarks = &mut self.scene.remarks;
         let mut left_out = |error: anyhow::Error| remarks.push(format!("{place}: what gives it colours is left out: {error:#}"));
         let colours = attributes.colours().map_err(&mut left_out).ok().flatten().filter(|colours| colours.len() == count);
-        let places = colour_texture(&primitive.material()).and_then(|info| {
+        let places = placed_texture(&primitive.material()).and_then(|info| {
             let places = attributes.get::<2>(&Semantic::TexCoords(places_of(&info)), Kind::Places);
             places.map_err(&mut left_out).ok().flatten().filter(|places| places.len() == count)
         });
@@ -212,8 +216,12 @@ impl Reader<'_> {
         Ok(())
     }
 
-    /// A texture of the file, or nothing if it cannot be read, which is said.
+    /// A texture of the file, or nothing if it is not wanted or cannot be read, which is said.
     fn texture(&mut self, info: &Info<'_>) -> Option<Texture> {
+        if self.colours == Colours::None {
+            self.scene.ignored.insert("textures");
+            return None;
+        }
         let Some(source) = info.texture().source() else {
             self.scene.remarks.push(format!(
                 "the texture {} is left out: its image is neither PNG nor JPEG; save it as one of them",
@@ -228,6 +236,17 @@ impl Reader<'_> {
         Some(Texture { image, transform: transform_of(info) })
     }
 
+    /// Where a material sends out its light. A corner has one place, which is that on the texture of colour if there is one. Of a texture of light that
+    /// has others, the mean counts.
+    fn emission(&mut self, material: &gltf::Material<'_>) -> Emission {
+        let Some(info) = light_texture(material) else { return Emission::Even };
+        let has_own_places = placed_texture(material).is_some_and(|placed| places_of(&placed) == places_of(&info));
+        match self.texture(&info) {
+            Some(texture) => Emission::By(if has_own_places { texture } else { texture.even() }),
+            None => Emission::Unread,
+        }
+    }
+
     /// The number of a primitive's material in the scene; notes what of it is left out.
     fn material(&mut self, primitive: &Primitive<'_>) -> usize {
         let material = primitive.material();
@@ -238,37 +257,27 @@ impl Reader<'_> {
             let name = || material.name().map_or_else(|| format!("material {}", self.numbers.len()), str::to_owned);
             let gloss = material.pbr_specular_glossiness();
             let texture = colour_texture(&material);
-            // A texture says where light is sent out, and most of it is black.
-            let is_even = texture.is_none() && material.emissive_texture().is_none();
             self.scene.materials.push(material.index().map(|_| {
                 let alike = match &gloss {
                     Some(gloss) => pbr::of_gloss(name(), gloss.diffuse_factor(), gloss.specular_factor(), gloss.glossiness_factor()),
                     None => pbr::material(name(), pbr.base_color_factor(), pbr.metallic_factor(), pbr.roughness_factor()),
                 };
-                let emission = if is_even { pbr::emission(material.emissive_factor(), material.emissive_strength()) } else { [0.0; 3] };
+                let emission = pbr::emission(material.emissive_factor(), material.emissive_strength());
                 Material { emission, two_sided: material.double_sided(), ..alike }
             }));
-            if self.colours == Colours::None && texture.is_some() {
-                self.scene.ignored.insert("textures");
-            }
-            let texture = texture.filter(|_| self.colours != Colours::None).and_then(|info| self.texture(&info));
+            let texture = texture.and_then(|info| self.texture(&info));
             let (texture, transparency) = seen_through(&material, texture);
             if let Some(Some(material)) = self.scene.materials.last_mut() {
                 material.transparency = transparency;
             }
             self.scene.textures.push(texture);
+            let emission = self.emission(&material);
+            self.scene.emissions.push(emission);
             let has_texture = gloss.is_some_and(|gloss| gloss.specular_glossiness_texture().is_some())
                 || pbr.metallic_roughness_texture().is_some()
                 || material.normal_texture().is_some()
-                || material.occlusion_texture().is_some()
-                || material.emissive_texture().is_some();
-            let mut note = |is_there: bool, what| {
-                if is_there {
-                    self.scene.ignored.insert(what);
-                }
-            };
-            note(has_texture, "textures other than those of colour");
-            note(!is_even && material.emissive_factor() != [0.0; 3], UNEVEN_LIGHT);
+                || material.occlusion_texture().is_some();
+            self.scene.ignored.extend(has_texture.then_some("textures other than those of colour"));
             self.numbers.len() - 1
         })
     }
@@ -303,6 +312,16 @@ fn colour_texture<'a>(material: &gltf::Material<'a>) -> Option<Info<'a>> {
         Some(gloss) => gloss.diffuse_texture(),
         None => material.pbr_metallic_roughness().base_color_texture(),
     }
+}
+
+/// The texture of the light that a material sends out.
+fn light_texture<'a>(material: &gltf::Material<'a>) -> Option<Info<'a>> {
+    material.emissive_texture().filter(|_| material.emissive_factor() != [0.0; 3])
+}
+
+/// The texture on which the corners of a primitive have their places.
+fn placed_texture<'a>(material: &gltf::Material<'a>) -> Option<Info<'a>> {
+    colour_texture(material).or_else(|| light_texture(material))
 }
 
 /// The set of coordinates on a texture.

@@ -14,7 +14,7 @@ use crate::{
     mtl, names,
     number::grouped,
     obj::{self, Obj},
-    paint::{self, Painted},
+    paint::{self, Emission, Painted},
     ply::{self, Ply},
     stl::{self, Stl},
     text,
@@ -102,12 +102,15 @@ fn welded(path: &Path, bytes: &[u8], folder: &Folder, weld: Weld, rules: Rules) 
 /// # Errors
 /// Names the file, and what is wrong with it.
 pub(crate) fn made_of(contents: Contents, name: &str, weld: Weld, rules: Rules) -> Result<Imported> {
-    let Contents { soup, objects, mut materials, mut textures, mut ignored, mut faults, mut remarks } = contents;
+    let Contents { soup, objects, mut materials, mut textures, emissions, mut ignored, mut faults, mut remarks } = contents;
     if rules.opaque {
         materials.iter_mut().flatten().for_each(|material| material.transparency = 0.0);
         textures = textures.into_iter().map(|texture| Some(texture?.cut(0.0))).collect();
     }
     let (mut mesh, sources, report) = mesh::weld_with_sources(&soup, weld).with_context(|| name.to_owned())?;
+    // Without colours, all light is as white surfaces have it.
+    let of_colours = if rules.colours == Colours::None { &[] } else { &sources[..] };
+    let emitted = paint::emit(&mesh, of_colours, &soup, &mut materials, &textures, &emissions);
     let painted = match rules.colours {
         Colours::None => Painted::default(),
         Colours::Corners => paint::paint(&mut mesh, sources, &soup, &mut materials, &textures, None),
@@ -120,8 +123,10 @@ pub(crate) fn made_of(contents: Contents, name: &str, weld: Weld, rules: Rules) 
     };
     let backs = backs::add(&mut mesh, has_two_sides);
     remarks.extend(painted.sentences());
+    remarks.extend(emitted.sentence());
     remarks.extend(hardly_seen(&materials));
     remarks.extend(backs::sentence(backs, rules.sides));
+    ignored.extend(emitted.is_left_out.then_some("light that materials send out by a texture"));
     if !painted.has_any() {
         ignored.extend((!soup.colours.is_empty()).then_some("colours of vertices"));
         ignored.extend(textures.iter().any(Option::is_some).then_some("textures"));
@@ -230,6 +235,12 @@ fn with_libraries(folder: &Folder, obj: Obj, colours: Colours) -> Result<Content
         remarks.push(format!("materials that no file defines have the colour of the command line: {}", unknown.join(", ")));
     }
     let images = &mut Images::default();
+    let emission = |material: &Option<mtl::Material>| {
+        let Some(name) = material.as_ref().and_then(|material| material.emission_texture.as_ref()) else { return Emission::Even };
+        let texture = (colours != Colours::None).then(|| texture(name, images, folder, &mut remarks)).flatten();
+        texture.map_or(Emission::Unread, Emission::By)
+    };
+    let emissions = materials.iter().map(emission).collect();
     let textures = match colours {
         Colours::None => {
             let has_texture = |material: &mtl::Material| material.texture.is_some() || material.mask.is_some();
@@ -245,14 +256,14 @@ fn with_libraries(folder: &Folder, obj: Obj, colours: Colours) -> Result<Content
                     ignored.insert("opacity of textures of colour that no map_d names");
                 }
                 let Some(mask) = mask else { return colour };
-                let white = Arc::new(Image::white());
+                let white = Arc::new(Image::of_colour([1.0; 3]));
                 let image = colour.map_or(white, |texture| texture.image);
                 Some(Texture { image: Arc::new(image.with_opacity(&mask.image).cut(0.5)), ..mask })
             };
             materials.iter().map(of).collect()
         }
     };
-    Ok(Contents { soup, objects, materials, textures, ignored, faults, remarks })
+    Ok(Contents { soup, objects, materials, textures, emissions, ignored, faults, remarks })
 }
 
 /// A texture of this name, or nothing if it cannot be read, which is said.

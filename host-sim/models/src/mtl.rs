@@ -9,7 +9,7 @@ use crate::{
     vector::{V3, add, scale},
 };
 use anyhow::{Context, Result, bail};
-use std::{collections::BTreeSet, mem};
+use std::collections::BTreeSet;
 
 /// The contents of an MTL file.
 #[derive(Clone, Debug, Default)]
@@ -35,6 +35,8 @@ pub struct Material {
     pub exponent: Option<f64>,
     /// `Ke`: the light that the surface sends out, in whatever light it stands.
     pub emission: V3,
+    /// `map_Ke`: the file of the texture by which this light is multiplied.
+    pub emission_texture: Option<String>,
     /// `map_Kd`: the file of the texture.
     pub texture: Option<String>,
     /// `map_d`: the file of the texture's opacity.
@@ -49,8 +51,6 @@ pub struct Material {
 const DIFFUSE: V3 = [0.6; 3];
 /// Exponent of a material without `Ns`.
 const EXPONENT: f64 = 30.0;
-/// What is left out of a material with textures.
-pub(crate) const UNEVEN_LIGHT: &str = "light that textured materials send out";
 /// The largest exponent of a stream.
 pub(crate) const SHARPEST: f64 = 1024.0;
 
@@ -92,7 +92,6 @@ impl Material {
 /// The error names the line and its fault.
 pub fn parse(text: &str) -> Result<Mtl> {
     let mut mtl = Mtl::default();
-    let mut shines_by_texture = Vec::new();
     // Of the material that is read.
     let mut has_opacity = false;
     for (number, line) in logical_lines(&plain(text)) {
@@ -110,7 +109,7 @@ pub fn parse(text: &str) -> Result<Mtl> {
         }
         let ignored = match keyword.as_str() {
             "tf" => Some("colours of light that surfaces let through"),
-            "map_kd" | "map_d" => None,
+            "map_kd" | "map_d" | "map_ke" => None,
             _ if keyword.starts_with("map_") || ["bump", "disp", "decal", "norm", "refl"].contains(&keyword.as_str()) => {
                 Some("textures other than those of colour")
             }
@@ -123,7 +122,7 @@ pub fn parse(text: &str) -> Result<Mtl> {
             "ka" => material.ambient = colour(words).with_context(place)?.or(material.ambient),
             "kd" => material.diffuse = colour(words).with_context(place)?.or(material.diffuse),
             "ke" => material.emission = colour(words).with_context(place)?.unwrap_or_default(),
-            "map_ke" => shines_by_texture.push(material.name.clone()),
+            "map_ke" => material.emission_texture = Some(file_of(&rest(&line))).filter(|name| !name.is_empty()),
             "ks" => material.specular = colour(words).with_context(place)?.or(material.specular),
             "ns" => material.exponent = Some(share(words.next().unwrap_or_default()).with_context(place)?),
             // Illumination models without a highlight.
@@ -143,13 +142,11 @@ pub fn parse(text: &str) -> Result<Mtl> {
     let whole: Vec<&str> = mtl.materials.iter().map(|material| material.name.as_str()).collect();
     let names = without_comments(&whole);
     for (material, name) in mtl.materials.iter_mut().zip(names) {
-        // A texture says where light is sent out, and most of it is black.
-        let is_even = material.texture.is_none() && !shines_by_texture.contains(&material.name);
-        if !is_even && mem::take(&mut material.emission) != [0.0; 3] {
-            mtl.ignored.insert(UNEVEN_LIGHT);
-        }
         material.name = name;
-        // Maya writes black where the texture has the colour.
+        // Some programs write black where the texture has all of the light, and Maya where it has the colour.
+        if material.emission_texture.is_some() && material.emission == [0.0; 3] {
+            material.emission = [1.0; 3];
+        }
         if material.texture.is_some() && material.diffuse == Some([0.0; 3]) {
             material.diffuse = None;
             material.ambient = material.ambient.filter(|&ambient| ambient != [0.0; 3]);
@@ -221,17 +218,19 @@ mod tests {
 
     #[test]
     fn light_that_is_sent_out_is_ambient() {
-        for (text, emission, is_told) in [
-            ("Kd 0\nKe 1 0.5 0", [1.0, 0.5, 0.0], false),
-            ("Ke 0.5", [0.5; 3], false),
-            ("Ke 0 0 0\nmap_Kd a.png", [0.0; 3], false),
-            ("Ke 1 1 1\nmap_Kd a.png", [0.0; 3], true),
-            ("map_Ke a.png\nKe 1 1 1", [0.0; 3], true),
+        for (text, emission, texture) in [
+            ("Kd 0\nKe 1 0.5 0", [1.0, 0.5, 0.0], None),
+            ("Ke 0.5", [0.5; 3], None),
+            ("Ke 0 0 0\nmap_Kd a.png", [0.0; 3], None),
+            ("Ke 1 1 1\nmap_Kd a.png", [1.0; 3], None),
+            ("map_Ke a.png\nKe 0.5", [0.5; 3], Some("a.png")),
+            ("map_Ke -mm 0 1 a b.png", [1.0; 3], Some("a b.png")),
+            ("Ke 0 0 0\nmap_Ke a.png", [1.0; 3], Some("a.png")),
         ] {
             let mtl = parse(&format!("newmtl a\n{text}\nnewmtl after\nKd 1\n")).unwrap();
             let [material, _] = &mtl.materials[..] else { panic!("{mtl:?}") };
             assert_eq!(material.surface(0.5).ambient, add(scale(material.surface(0.0).diffuse, 0.5), emission), "{text}");
-            assert_eq!(mtl.ignored.contains(UNEVEN_LIGHT), is_told, "{text}");
+            assert!(material.emission_texture.as_deref() == texture && mtl.ignored.is_empty(), "{text}");
         }
     }
 

@@ -4,6 +4,7 @@
 //! each face lies in a patch of one colour, or in a gradient, and colours at the corners come very close to that. The colours of a triangle with a texture
 //! are those of least squared distance at many of its points. Where they are far from too much of a texture, triangles can have the texture itself.
 
+mod emission;
 mod facet;
 mod fit;
 mod palette;
@@ -19,6 +20,7 @@ use crate::{
     texture::Texture,
     vector::{V3, cross, length, sub},
 };
+pub(crate) use emission::{Emission, emit};
 use facet::{Facet, Facets};
 use fit::{Apart, FAR, Fit, Fitting};
 pub(crate) use palette::distance;
@@ -94,8 +96,7 @@ struct Area {
 impl Area {
     /// The area of a triangle.
     fn of(mesh: &Mesh, triangle: usize, apart: &Apart) -> Self {
-        let [a, b, c] = mesh.triangles[triangle].map(|vertex| mesh.positions[vertex]);
-        let all = length(cross(sub(b, a), sub(c, a)));
+        let all = area(mesh, triangle);
         Self { all, lost: apart.lost * all }
     }
 
@@ -111,6 +112,12 @@ impl Area {
     fn is_lost(&self) -> bool {
         self.share() > LOST
     }
+}
+
+/// Twice the area of a triangle.
+fn area(mesh: &Mesh, triangle: usize) -> f64 {
+    let [a, b, c] = mesh.triangles[triangle].map(|vertex| mesh.positions[vertex]);
+    length(cross(sub(b, a), sub(c, a)))
 }
 
 /// A mesh with the colours that it has.

@@ -42,10 +42,11 @@ pub(crate) fn of_gloss(name: String, [red, green, blue, _]: [f32; 4], specular: 
     }
 }
 
-/// The light that a material sends out, of a linear colour and how strong it is (KHR_materials_emissive_strength).
+/// The light that a material sends out, of a linear colour and how strong it is (KHR_materials_emissive_strength). It may be more than 1, because a
+/// texture can make it weaker.
 pub(crate) fn emission(colour: [f32; 3], strength: Option<f32>) -> V3 {
-    let strength = f64::from(strength.unwrap_or(1.0));
-    encoded(colour.map(|c| (f64::from(c) * strength).clamp(0.0, 1.0)))
+    let strength = f64::from(strength.unwrap_or(1.0)).clamp(0.0, f64::MAX);
+    encoded(colour.map(|c| strength * f64::from(c).clamp(0.0, 1.0)))
 }
 
 /// How far a material is a metal, from 0 to 1: the solution of the quadratic equation by which the two colours follow from a base colour.

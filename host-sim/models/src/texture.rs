@@ -149,9 +149,16 @@ impl Image {
         }
     }
 
-    /// An image of one white pixel.
-    pub(crate) fn white() -> Self {
-        Self { width: 1, pixels: vec![[255; 3]], opacity: Vec::new(), holes: Vec::new() }
+    /// The mean colour of all pixels.
+    pub(crate) fn mean(&self) -> V3 {
+        let sum = self.pixels.iter().fold([0.0; 3], |sum, pixel| add(sum, pixel.map(f64::from)));
+        scale(sum, 1.0 / (255.0 * self.pixels.len() as f64))
+    }
+
+    /// An image of one pixel.
+    pub(crate) fn of_colour(colour: V3) -> Self {
+        let pixel = colour.map(|c| (255.0 * c).round() as u8);
+        Self { width: 1, pixels: vec![pixel], opacity: Vec::new(), holes: Vec::new() }
     }
 
     fn is_hole(&self, number: usize) -> bool {
@@ -262,6 +269,11 @@ impl Texture {
     /// The texture with holes where its opacity is less than this share.
     pub(crate) fn cut(self, share: f64) -> Self {
         if self.image.has_opacity() { Self { image: Arc::new(self.image.cut(share)), ..self } } else { self }
+    }
+
+    /// The texture with its mean colour everywhere.
+    pub(crate) fn even(self) -> Self {
+        Self { image: Arc::new(Image::of_colour(self.image.mean())), ..self }
     }
 
     /// The place on the image at coordinates of the surface.

@@ -253,7 +253,7 @@ fn nodes_move_turn_stretch_and_mirror() {
     assert!((reach(true) / reach(false) - 2.0).abs() < 1e-6, "{} {}", reach(true), reach(false));
 }
 
-/// Materials of glTF may have two sides, and may send out light; a texture says where, and that light is left out.
+/// Materials of glTF may have two sides, and may send out light; a texture may say where, without which that light is left out.
 #[test]
 fn materials_have_sides_and_send_out_light() {
     let place = Place::new();
@@ -280,21 +280,14 @@ fn materials_have_sides_and_send_out_light() {
     assert_eq!(surface.ambient, [0, 1, 2].map(|k| 0.25 * surface.diffuse[k] + light(&lamp)[k]));
     let uneven = of(json!({"emissiveFactor": [1.0, 1.0, 1.0], "emissiveTexture": {"index": 0}}));
     assert_eq!(light(&uneven), [0.0; 3]);
-    assert_eq!(uneven.remarks, ["left out: light that textured materials send out, textures other than those of colour"]);
+    let [image, others] = &uneven.remarks[..] else { panic!("{:?}", uneven.remarks) };
+    assert!(image.starts_with("the image 0 is left out: cannot read "), "{image}");
+    assert_eq!(others, "left out: light that materials send out by a texture");
 }
 
-/// Opacity counts where the material says so: a texture is cut at the cutoff, or at a half where it is blended, and the rest has its mean.
-#[test]
-fn materials_are_seen_through() {
-    let place = Place::new();
+/// A cube whose vertices have places in four columns of an image, one after the other, and whose only material is not yet there.
+fn placed_cube() -> (Value, Vec<u8>) {
     let (mut document, mut bytes) = cube().gltf();
-    let mut image = Vec::new();
-    let mut encoder = png::Encoder::new(&mut image, 4, 1);
-    encoder.set_color(png::ColorType::Rgba);
-    let pixels = [[255, 0, 0, 255], [0, 255, 0, 153], [0, 0, 255, 102], [9, 9, 9, 0]].concat();
-    encoder.write_header().unwrap().write_image_data(&pixels).unwrap();
-    place.file("a.png", image);
-    // One place for each vertex.
     let vertices = document["accessors"][1]["count"].as_u64().unwrap() as usize;
     let before = bytes.len();
     bytes.extend((0..vertices).flat_map(|vertex| [(vertex % 4) as f32 / 4.0 + 0.125, 0.5]).flat_map(f32::to_le_bytes));
@@ -307,8 +300,69 @@ fn materials_are_seen_through() {
     document["buffers"][0]["byteLength"] = bytes.len().into();
     document["meshes"][0]["primitives"][0]["attributes"]["TEXCOORD_0"] = accessor.into();
     document["meshes"][0]["primitives"][0]["material"] = 0.into();
-    document["textures"] = json!([{"source": 0}]);
-    document["images"] = json!([{"uri": "a.png"}]);
+    document["textures"] = json!([{"source": 0}, {"source": 1}]);
+    document["images"] = json!([{"uri": "a.png"}, {"uri": "b.png"}]);
+    (document, bytes)
+}
+
+/// A PNG of one row.
+fn row<const N: usize>(kind: png::ColorType, pixels: &[[u8; N]]) -> Vec<u8> {
+    let mut image = Vec::new();
+    let mut encoder = png::Encoder::new(&mut image, pixels.len() as u32, 1);
+    encoder.set_color(kind);
+    encoder.write_header().unwrap().write_image_data(pixels.as_flattened()).unwrap();
+    image
+}
+
+/// The light of a texture becomes one, which comes nearest to it over the triangles of the material, and materials that do not have all of it are named.
+#[test]
+fn textures_say_where_light_is_sent_out() {
+    let place = Place::new();
+    let (mut document, bytes) = placed_cube();
+    place.file("a.png", row(png::ColorType::Rgb, &[[255, 0, 0], [0; 3]]));
+    place.file("b.png", row(png::ColorType::Rgb, &[[51; 3]]));
+    let mut of = |material: Value, colours: Colours| {
+        document["materials"] = json!([material]);
+        document["materials"][0]["name"] = "lamp".into();
+        let rules = Rules { colours, ..Rules::default() };
+        let imported = import::file_by(&place.file("a.glb", glb(&document, &bytes)), Weld::default(), rules).unwrap();
+        let is_near = imported.remarks.iter().any(|remark| remark.starts_with("the light that these materials send out is only near to"));
+        assert!(!is_near || imported.remarks.iter().any(|remark| remark.ends_with(": lamp")), "{:?}", imported.remarks);
+        let light = imported.materials.iter().flatten().map(|material| material.emission.map(|c| (1e3 * c).round())).next_back().unwrap();
+        (light, is_near, imported.remarks.iter().any(|remark| remark.contains("light that materials send out by a texture")))
+    };
+    let full = [1.0; 3];
+    let on = |texture: u8, set: u8| json!({"index": texture, "texCoord": set});
+    // Two vertices of four are red: the mean over all sides of the cube.
+    let (light, is_near, is_left_out) = of(json!({"emissiveFactor": full, "emissiveTexture": on(0, 0)}), Colours::Corners);
+    assert!((light[0] - 500.0).abs() < 15.0 && light[1..] == [0.0; 2] && is_near && !is_left_out, "{light:?}");
+    // One colour is kept as it is, and a strong light is full at most.
+    for (strength, factor, expected) in [(1.0, full, [200.0; 3]), (4.0, [1.0, 0.25, 0.0], [365.0, 200.0, 0.0]), (1e38, full, [1000.0; 3])] {
+        let extensions = json!({"KHR_materials_emissive_strength": {"emissiveStrength": strength}});
+        let lamp = json!({"emissiveFactor": factor, "emissiveTexture": on(1, 0), "extensions": extensions});
+        assert_eq!(of(lamp, Colours::Corners), (expected, false, false));
+    }
+    // Where light has the colours of the surface, it is all of them.
+    let alike = json!({"emissiveFactor": full, "emissiveTexture": on(0, 0), "pbrMetallicRoughness": {"baseColorTexture": on(0, 0)}});
+    assert_eq!(of(alike.clone(), Colours::Corners), ([1000.0, 0.0, 0.0], false, false));
+    assert_eq!(of(alike, Colours::None), ([0.0; 3], false, true));
+    // The light, which is 0.19 in sRGB, is there although colours of 0.2 would make it weaker.
+    let even = json!({"emissiveFactor": [0.03, 0.03, 0.03], "pbrMetallicRoughness": {"baseColorTexture": on(1, 0)}});
+    assert_eq!(of(even, Colours::Corners), ([949.0; 3], false, false));
+    // Of a texture with other places, the mean counts, if there are places at all.
+    let other = json!({"emissiveFactor": full, "emissiveTexture": on(0, 1), "pbrMetallicRoughness": {"baseColorTexture": on(0, 0)}});
+    assert_eq!(of(other, Colours::Corners), ([502.0, 0.0, 0.0], true, false));
+    assert_eq!(of(json!({"emissiveFactor": full, "emissiveTexture": on(0, 1)}), Colours::Corners), ([0.0; 3], false, true));
+    // Without light, the texture is of no use.
+    assert_eq!(of(json!({"emissiveTexture": on(0, 0)}), Colours::Corners), ([0.0; 3], false, false));
+}
+
+/// Opacity counts where the material says so: a texture is cut at the cutoff, or at a half where it is blended, and the rest has its mean.
+#[test]
+fn materials_are_seen_through() {
+    let place = Place::new();
+    let (mut document, bytes) = placed_cube();
+    place.file("a.png", row(png::ColorType::Rgba, &[[255, 0, 0, 255], [0, 255, 0, 153], [0, 0, 255, 102], [9, 9, 9, 0]]));
     let mut of = |opacity: f64, mut material: Value| {
         material["pbrMetallicRoughness"] = json!({"baseColorFactor": [1, 1, 1, opacity], "baseColorTexture": {"index": 0}});
         document["materials"] = json!([material]);

@@ -99,6 +99,41 @@ fn a_checkerboard_is_kept_exactly() {
     );
 }
 
+/// A texture of MTL says where a material sends out light, which becomes one for all of it: the mean, or what the colours make most like it.
+#[test]
+fn light_of_mtl_is_that_of_its_texture() {
+    let red_and_black = png(&[vec![[255, 0, 0], [0; 3]]]);
+    let (white_and_black, grey) = (png(&[vec![[255; 3], [0; 3]]]), png(&[vec![[51; 3]]]));
+    let of = |text: &str, mtl: &str, rules: Rules| {
+        let mtl = format!("newmtl paint\n{mtl}");
+        let files: [(&str, &[u8]); 5] = [
+            ("a.obj", text.as_bytes()),
+            ("a.mtl", mtl.as_bytes()),
+            ("red.png", &red_and_black),
+            ("white.png", &white_and_black),
+            ("grey.png", &grey),
+        ];
+        let Converted { materials, remarks, .. } = converted(&files, &Options { rules, ..Options::default() }).unwrap();
+        let is_near =
+            remarks.iter().any(|remark| remark.starts_with("the light that these materials send out") && remark.ends_with(": paint"));
+        let is_left_out = remarks.iter().any(|remark| remark.contains("light that materials send out by a texture"));
+        (materials[0].as_ref().unwrap().emission.map(|c| (1e3 * c).round()), is_near, is_left_out)
+    };
+    let (placed, all) = (textured(&[square()]), Rules::default());
+    assert_eq!(of(&placed, "Kd 0\nmap_Ke red.png\n", all), ([500.0, 0.0, 0.0], true, false));
+    assert_eq!(of(&placed, "Kd 0\nKe 0.5\nmap_Ke grey.png\n", all), ([100.0; 3], false, false));
+    assert_eq!(of(&placed, "Ke 1\nmap_Kd red.png\nmap_Ke red.png\n", all), ([1000.0, 0.0, 0.0], false, false));
+    assert_eq!(of(&placed, "Ke 0.1\nmap_Kd grey.png\n", all), ([500.0; 3], false, false));
+    // Black surfaces of a material cannot send out light.
+    assert_eq!(of(&placed, "Ke 0.4\nmap_Kd white.png\n", all), ([400.0; 3], true, false));
+    let without = Rules { colours: Colours::None, ..all };
+    assert_eq!(of(&placed, "Ke 0.4\nmap_Kd white.png\n", without), ([400.0; 3], false, false));
+    assert_eq!(of(&placed, "map_Ke red.png\n", without), ([0.0; 3], false, true));
+    assert_eq!(of(&placed, "map_Ke none.png\n", all), ([0.0; 3], false, true));
+    let bare = "mtllib a.mtl\nusemtl paint\nv 0 0 0\nv 1 0 0\nv 0 1 0\nf 1 2 3\n";
+    assert_eq!(of(bare, "map_Ke red.png\n", all), ([0.0; 3], false, true));
+}
+
 /// Sides become the nearest power of two, at most the size that is asked for, and texels the means of areas.
 #[test]
 fn images_are_resampled_by_areas() {

@@ -165,7 +165,8 @@ fn components_may_be_in_other_parts() {
 fn triangles_have_base_materials() {
     let bases = r##"<basematerials id="5"><base name="red" displaycolor="#FF0000"/><base name="half blue" displaycolor="#0000FF80"/></basematerials>"##;
     let faces = [r#"pid="5" p1="1""#, r#"p1="1""#, "", r#"pid="9" p1="0""#];
-    let scene = parsed(&of_model(&model(&format!("{bases}{}", object(r#"id="1" pid="5" pindex="0""#, faces)), r#"<item objectid="1"/>"#)));
+    let text = model(&format!("{bases}{}", object(r#"id="1" pid="5" pindex="0""#, faces)), r#"<item objectid="1"/>"#);
+    let scene = parsed(&of_model(&text));
     let names: Vec<_> = scene.materials.iter().map(|material| material.as_ref().map(|material| &material.name[..])).collect();
     assert_eq!(names, [Some("half blue"), Some("red"), None]);
     assert_eq!(scene.soup.faces.iter().map(|face| face.submesh.material).collect::<Vec<_>>(), [0, 0, 1, 2]);
@@ -177,6 +178,17 @@ fn triangles_have_base_materials() {
         scene.faults.sentences().collect::<Vec<_>>(),
         ["1 triangle has a material or a colour that the file does not have, and is drawn without it: object 1, triangle 4"]
     );
+    // The two last digits of a colour are its opacity, as in other formats.
+    let place = tempfile::tempdir().unwrap();
+    let file = place.path().join("a.3mf");
+    fs::write(&file, of_model(&text.replace("0000FF80", "0000FF00"))).unwrap();
+    let of = |opaque: bool| {
+        let Imported { materials, remarks, .. } = import::file_by(&file, Weld::default(), Rules { opaque, ..Rules::default() }).unwrap();
+        let is_told =
+            remarks.iter().any(|remark| remark.starts_with("the file makes these materials invisible") && remark.contains("blue"));
+        (materials[0].as_ref().map(|material| material.transparency), is_told)
+    };
+    assert_eq!([of(false), of(true)], [(Some(1.0), true), (Some(0.0), false)]);
 }
 
 /// Corners have colours of their own, which are opaque. A face without colours has the material of the command line.

@@ -84,7 +84,7 @@ pub(super) struct Facets<'a> {
 impl<'a> Facets<'a> {
     /// The colours of a triangle; `None` if it has neither a texture nor colours at its corners.
     pub(super) fn of(&self, mesh: &Mesh, triangle: usize) -> Option<Facet<'a>> {
-        let [a, b, c] = self.sources[triangle];
+        let [a, b, c] = *self.sources.get(triangle)?;
         let colour = |source: Source| Some(self.soup.colours[source.colour? as usize]);
         let texture = self.textures.get(mesh.submesh(triangle).material).and_then(Option::as_ref).and_then(|texture| {
             let place = |source: Source| Some(texture.place(self.soup.places[source.place? as usize]));

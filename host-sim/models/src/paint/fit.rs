@@ -6,7 +6,7 @@ use crate::vector::{V3, add, cross, dot, scale, sub};
 /// Points along each side of a triangle at which its texture is read: the middles of equal triangles, and so not its rim.
 const SIDE: usize = 7;
 /// Points of a triangle at which its texture is read.
-const POINTS: usize = SIDE * (SIDE + 1) / 2;
+pub(super) const POINTS: usize = SIDE * (SIDE + 1) / 2;
 /// A triangle takes one colour if its corners differ by no more than this share of full.
 const FLAT: f64 = 3.0 / 255.0;
 /// A colour that differs from that of the file by more than this share of full is said to be far.
@@ -141,7 +141,7 @@ impl Fitting {
     }
 
     /// The colours of a triangle at all points.
-    fn seen(&self, facet: &Facet<'_>) -> [V3; POINTS] {
+    pub(super) fn seen(&self, facet: &Facet<'_>) -> [V3; POINTS] {
         let mut seen = [[0.0; 3]; POINTS];
         seen.iter_mut().zip(&self.points).for_each(|(colour, &shares)| *colour = facet.at(shares));
         seen
