@@ -77,8 +77,14 @@ pub(crate) fn parse(bytes: &[u8], folder: &Folder, colours: Colours) -> Result<C
     Ok(reader.scene)
 }
 
-/// Extensions of materials that are read.
-const OF_MATERIALS: [&str; 2] = ["KHR_materials_pbrSpecularGlossiness", "KHR_materials_emissive_strength"];
+/// Extensions of materials that are read, or that change only how light bends and fades within a transparent body.
+const OF_MATERIALS: [&str; 5] = [
+    "KHR_materials_pbrSpecularGlossiness",
+    "KHR_materials_emissive_strength",
+    "KHR_materials_transmission",
+    "KHR_materials_ior",
+    "KHR_materials_volume",
+];
 
 /// Contents of a document that are left out, without the contents of its meshes.
 fn besides(document: &Document) -> BTreeSet<&'static str> {
@@ -247,6 +253,18 @@ impl Reader<'_> {
         }
     }
 
+    /// The share of the light from behind that passes through a transmissive material. A texture counts by its mean. If it is not read, nothing passes,
+    /// because it may say that only the windows of a car are glass.
+    fn transmitted(&mut self, material: &gltf::Material<'_>, colours: Option<&Texture>) -> f64 {
+        let Some(transmission) = material.transmission().filter(|transmission| transmission.transmission_factor() > 0.0) else {
+            return 0.0;
+        };
+        let mean =
+            transmission.transmission_texture().map_or(1.0, |info| self.texture(&info).map_or(0.0, |texture| texture.image.mean()[0]));
+        let colour = colours.map_or([1.0; 3], |texture| texture.image.mean());
+        pbr::transmitted(base_colour(material), colour, f64::from(transmission.transmission_factor()) * mean)
+    }
+
     /// The number of a primitive's material in the scene; notes what of it is left out.
     fn material(&mut self, primitive: &Primitive<'_>) -> usize {
         let material = primitive.material();
@@ -266,9 +284,10 @@ impl Reader<'_> {
                 Material { emission, two_sided: material.double_sided(), ..alike }
             }));
             let texture = texture.and_then(|info| self.texture(&info));
+            let transmitted = self.transmitted(&material, texture.as_ref());
             let (texture, transparency) = seen_through(&material, texture);
             if let Some(Some(material)) = self.scene.materials.last_mut() {
-                material.transparency = transparency;
+                material.transparency = transparency.max(transmitted);
             }
             self.scene.textures.push(texture);
             let emission = self.emission(&material);
@@ -286,10 +305,7 @@ impl Reader<'_> {
 /// What is seen through a material: its texture with holes, and the share of the light from behind that it lets through. Where a texture is blended, it has
 /// holes where it is less than half opaque, and the rest has one opacity, which is the mean.
 fn seen_through(material: &gltf::Material<'_>, texture: Option<Texture>) -> (Option<Texture>, f64) {
-    let opacity = match material.pbr_specular_glossiness() {
-        Some(gloss) => gloss.diffuse_factor()[3],
-        None => material.pbr_metallic_roughness().base_color_factor()[3],
-    };
+    let [.., opacity] = base_colour(material);
     let opacity = f64::from(opacity).clamp(0.0, 1.0);
     match material.alpha_mode() {
         AlphaMode::Opaque => (texture, 0.0),
@@ -303,6 +319,14 @@ fn seen_through(material: &gltf::Material<'_>, texture: Option<Texture>) -> (Opt
             let mean = texture.as_ref().map_or(1.0, |texture| texture.image.mean_opacity());
             (texture, 1.0 - opacity * mean)
         }
+    }
+}
+
+/// The colour of a material, linear, and its opacity, by which its texture is multiplied.
+fn base_colour(material: &gltf::Material<'_>) -> [f32; 4] {
+    match material.pbr_specular_glossiness() {
+        Some(gloss) => gloss.diffuse_factor(),
+        None => material.pbr_metallic_roughness().base_color_factor(),
     }
 }
 

@@ -11,7 +11,7 @@
 
 use crate::{
     mtl::{Material, SHARPEST},
-    vector::{V3, add, scale},
+    vector::{V3, add, dot, scale},
 };
 
 /// Part of light that dielectrics mirror if it falls straight on them.
@@ -47,6 +47,14 @@ pub(crate) fn of_gloss(name: String, [red, green, blue, _]: [f32; 4], specular: 
 pub(crate) fn emission(colour: [f32; 3], strength: Option<f32>) -> V3 {
     let strength = f64::from(strength.unwrap_or(1.0)).clamp(0.0, f64::MAX);
     encoded(colour.map(|c| strength * f64::from(c).clamp(0.0, 1.0)))
+}
+
+/// The share of the light from behind that passes through a surface of a base colour, linear, and of a texture in sRGB, where this share of what is
+/// not mirrored passes through white glass (KHR_materials_transmission). Coloured glass lets less through. A stream lets as much through of each
+/// channel, which is the mean here, and the glass shows its colour by the rest.
+pub(crate) fn transmitted([red, green, blue, _]: [f32; 4], texture: V3, share: f64) -> f64 {
+    let base = encoded([red, green, blue].map(|c| f64::from(c).clamp(0.0, 1.0)));
+    (1.0 - DIELECTRIC) * share.clamp(0.0, 1.0) * dot(base, texture) / 3.0
 }
 
 /// How far a material is a metal, from 0 to 1: the solution of the quadratic equation by which the two colours follow from a base colour.
@@ -121,6 +129,16 @@ mod tests {
         let strength = |roughness| red(0.0, roughness).specular.map_or(0.0, |[r, ..]| r);
         assert!([0.9, 0.85, 0.8, 0.75, 0.7].map(strength).is_sorted_by(|a, b| a < b));
         assert!((strength(0.6) - strength(0.3)).abs() < 1e-9, "{} {}", strength(0.6), strength(0.3));
+    }
+
+    /// White glass mirrors a little, red glass holds two channels back, and black glass all.
+    #[test]
+    fn glass_lets_through_what_its_colour_does() {
+        let through = |colour: [f32; 4], texture, share| (1e3 * transmitted(colour, texture, share)).round();
+        assert_eq!(through([1.0; 4], [1.0; 3], 1.0), 960.0);
+        assert_eq!(through([1.0; 4], [0.5; 3], 0.5), 240.0);
+        assert_eq!(through([1.0, 0.0, 0.0, 1.0], [1.0; 3], 1.0), 320.0);
+        assert_eq!(through([0.0, 0.0, 0.0, 1.0], [1.0; 3], 1.0), 0.0);
     }
 
     #[test]

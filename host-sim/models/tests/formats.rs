@@ -357,6 +357,38 @@ fn textures_say_where_light_is_sent_out() {
     assert_eq!(of(json!({"emissiveTexture": on(0, 0)}), Colours::Corners), ([0.0; 3], false, false));
 }
 
+/// Glass lets light through, and its extensions are not said to be left out.
+#[test]
+fn glass_is_seen_through() {
+    let place = Place::new();
+    let (mut document, bytes) = placed_cube();
+    place.file("a.png", row(png::ColorType::Rgb, &[[255, 0, 0], [0; 3]]));
+    document["extensionsUsed"] =
+        ["transmission", "ior", "volume", "emissive_strength"].map(|name| format!("KHR_materials_{name}")).to_vec().into();
+    document["extensionsRequired"] = document["extensionsUsed"].clone();
+    let mut of = |transmission: Value, mut material: Value, rules: Rules| {
+        let volume = json!({"thicknessFactor": 0.5, "attenuationColor": [1.0, 0.5, 0.5]});
+        material["extensions"] =
+            json!({"KHR_materials_transmission": transmission, "KHR_materials_ior": {"ior": 1.3}, "KHR_materials_volume": volume});
+        document["materials"] = json!([material]);
+        let Imported { materials, remarks, .. } =
+            import::file_by(&place.file("a.glb", glb(&document, &bytes)), Weld::default(), rules).unwrap();
+        ((100.0 * materials[0].as_ref().unwrap().transparency).round(), remarks)
+    };
+    let all = Rules::default();
+    let base = |colour: [f64; 4]| json!({"alphaMode": "BLEND", "pbrMetallicRoughness": {"baseColorFactor": colour}});
+    assert_eq!(of(json!({"transmissionFactor": 1.0}), json!({}), all), (96.0, vec![]));
+    assert_eq!(of(json!({"transmissionFactor": 0.5}), base([1.0, 1.0, 0.0, 1.0]), all), (32.0, vec![]));
+    assert_eq!(of(json!({"transmissionFactor": 0.5}), base([1.0, 1.0, 0.0, 0.25]), all), (75.0, vec![]));
+    assert_eq!(of(json!({}), json!({}), all), (0.0, vec![]));
+    assert_eq!(of(json!({"transmissionFactor": 1.0}), json!({}), Rules { opaque: true, ..all }), (0.0, vec![]));
+    // The red of a texture is multiplied with the factor; without the texture, nothing is known of what is glass.
+    let by_texture = json!({"transmissionFactor": 1.0, "transmissionTexture": {"index": 0}});
+    assert_eq!(of(by_texture.clone(), json!({}), all), (48.0, vec![]));
+    let without = Rules { colours: Colours::None, ..all };
+    assert_eq!(of(by_texture, json!({}), without), (0.0, vec!["left out: textures".to_owned()]));
+}
+
 /// Opacity counts where the material says so: a texture is cut at the cutoff, or at a half where it is blended, and the rest has its mean.
 #[test]
 fn materials_are_seen_through() {
