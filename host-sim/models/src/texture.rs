@@ -218,12 +218,14 @@ impl Image {
 /// Whether the first channel of a JPEG file, which is the brightness, has at least as many samples as the others, as all programs write it.
 fn has_finest_luma(bytes: &[u8]) -> bool {
     let mut rest = bytes.get(2..).unwrap_or_default();
-    // Segments begin with 0xFF, a marker and a length. 0xC0 to 0xC2 are frames, of which each channel has a byte with its two numbers of samples.
-    while let [0xFF, marker, high, low, ..] = *rest {
-        // Any number of these bytes may come before a marker.
-        if marker == 0xFF {
-            rest = &rest[1..];
-            continue;
+    // Segments begin with 0xFF, a marker and a length. 0xC0 to 0xC2 are frames, of which each channel has a byte with its two numbers of samples. The
+    // decoder passes over all bytes between segments, and behind 0xDA is the image.
+    let begins = |pair: &[u8]| pair[0] == 0xFF && ![0, 0xFF].contains(&pair[1]);
+    while let Some(start) = rest.windows(2).position(begins) {
+        rest = &rest[start..];
+        let [_, marker, high, low, ..] = *rest else { break };
+        if marker == 0xDA {
+            break;
         }
         let length = usize::from(u16::from_be_bytes([high, low]));
         let segment = rest.get(4..2 + length).unwrap_or_default();
