@@ -130,7 +130,8 @@ pub(crate) fn made_of(contents: Contents, name: &str, weld: Weld, rules: Rules) 
     if !painted.has_any() {
         ignored.extend((!soup.colours.is_empty()).then_some("colours of vertices"));
         ignored.extend(textures.iter().any(Option::is_some).then_some("textures"));
-        ignored.extend((!soup.places.is_empty()).then_some("texture coordinates"));
+        let say_where_light_is = emissions.iter().any(|emission| matches!(emission, Emission::By(_)));
+        ignored.extend((!soup.places.is_empty() && !say_where_light_is).then_some("texture coordinates"));
     }
     faults.add_several(COMPUTED_NORMAL, report.computed_normals, || format!("face {}", report.first_computed));
     faults.add_several(TURNED, report.mended, || format!("face {}", report.first_mended));
