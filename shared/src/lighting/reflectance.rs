@@ -203,9 +203,10 @@ impl Reflectance {
         let Channels { depth, is_gray, is_coarse, .. } = channels;
         let LightTerms { colours: terms, base, are_one_channel } = LightTerms::new(&channels, ambient, material, lights);
         let is_plain = !LIGHT_SHAPES || !lights.iter().any(Light::has_shape);
-        // Loops for several lights have three channels.
+        // Loops for several lights have three channels, and in one channel the loops for one light have no room for the brightest levels.
         let are_several = LIGHTS && lights.len() > 1 && lights.iter().all(|light| light.kind != POINT);
-        let one_channel = !COLOURS || are_one_channel && (is_gray || !(is_coloured || holds_levels && are_several));
+        let is_bright = || terms.iter().map(|&term| u32::from(level(largest(term), 8))).sum::<u32>() + (1 << LEVEL) >= LARGEST;
+        let one_channel = !COLOURS || are_one_channel && (is_gray || !(is_coloured || holds_levels && (are_several || is_bright())));
         self.depth = depth;
         self.quarter = 0;
         let is_neutral = terms.iter().all(|&[r, g, b]| r == g && g == b);

@@ -93,58 +93,58 @@ struct SummedLights {
 }
 
 impl SummedLights {
-    /// The lights on the triangle `setup`.
+    /// Adds the lights on the triangle `setup`. They are not returned, because a copy of all terms takes longer than most of what is computed here.
     #[inline(never)]
-    fn on<C: Pixel>(
+    fn add<C: Pixel>(
+        &mut self,
         setup: &TriangleSetup<'_>,
         shading: &Shading<'_>,
         lengths: &Lengths,
         lookup: QuotientLookup<'_>,
         tables: MaterialTables<'_, C>,
-    ) -> Self {
+    ) {
         let (material, full) = (tables.reflectance, tables.summed_rgb().diffuse());
         let [a, b, c] = setup.corners.map(|corner| corner.light);
         let sides = Sides::of_triangle([a[3], b[3], c[3]], setup.triangle.min_normal_length);
-        let corners = [[a[0], b[0], c[0]], [a[1], b[1], c[1]], [a[2], b[2], c[2]]];
-        let ambient = if VERTEX_COLOURS && setup.albedos().is_some() { material.pure_ambient() } else { [0; 3] };
-        let mut lights = Self { corners, ambient, ..Self::default() };
+        self.corners = [[a[0], b[0], c[0]], [a[1], b[1], c[1]], [a[2], b[2], c[2]]];
+        if VERTEX_COLOURS && setup.albedos().is_some() {
+            self.ambient = material.pure_ambient();
+        }
         for (light, source) in shading.lighting.sources().iter().enumerate() {
             let Some(&[towards, half]) = source.directional() else { continue };
             let is_dark = sides.is_dark(light) && setup.leaves_out_light(material, &[0; 3]);
             if !is_dark && !sides.is_bright(light) {
                 let towards = setup.corner_cosines(towards);
                 let (gains, [a, b, c]) = (material.factors(light).diffuse, map(towards, |cosine| part(source, cosine)));
-                for (channel, gain) in lights.corners.iter_mut().zip(gains) {
+                for (channel, gain) in self.corners.iter_mut().zip(gains) {
                     let without = |sum: i32, part: i32| sum.wrapping_sub(gain.wrapping_mul(part));
                     *channel = [without(channel[0], a), without(channel[1], b), without(channel[2], c)];
                 }
-                Term::add(&mut lights.ending, plane(setup, full, lengths, &towards), gains);
+                Term::add(&mut self.ending, plane(setup, full, lengths, &towards), gains);
             }
             let mut has_highlight = !source.is_sky() && sides.may_have_highlight(light);
             if has_highlight {
                 let half = setup.corner_cosines(half);
                 has_highlight = !setup.leaves_out_highlight(material, &half);
                 if has_highlight {
-                    lights.is_visible |= largest(&half) >= setup.highlight_threshold(material);
-                    Term::add(&mut lights.highlights, numerator(setup, lookup, lengths, &half), material.factors(light).specular);
+                    self.is_visible |= largest(&half) >= setup.highlight_threshold(material);
+                    Term::add(&mut self.highlights, numerator(setup, lookup, lengths, &half), material.factors(light).specular);
                 }
             }
-            let [without_highlight, without_light] = &mut lights.without;
+            let [without_highlight, without_light] = &mut self.without;
             *without_highlight += u32::from(!has_highlight && !is_dark);
             *without_light += u32::from(!has_highlight && is_dark);
         }
-        lights
     }
 
-    /// These lights on a surface of one colour.
+    /// Puts these lights on a surface of one colour.
     #[inline(never)]
-    fn painted(mut self, albedo: Albedo) -> Self {
+    fn paint(&mut self, albedo: Albedo) {
         let reflected = |level: i32, share: i32| ((product(level, share) + (1 << (SHARE - 1))) >> SHARE) as i32;
         self.corners = zip(self.corners, albedo.shares(), |channel, share| map(channel, |level| reflected(level, share)));
         for term in &mut self.ending {
             term.factors = zip(term.factors, albedo.shares(), reflected);
         }
-        self
     }
 }
 
@@ -159,11 +159,13 @@ pub(super) fn draw<C: Pixel>(
 ) -> Option<u32> {
     let (lookup, mut colours) = (QuotientLookup::new(tables.reflectance.table()?), tables.summed_rgb());
     let one_colour = if setup.has_texture() { None } else { setup.albedos().and_then(Albedo::one) };
-    let (mut lights, ambient);
-    lights = SummedLights::on(setup, shading, lengths, lookup, tables);
+    let mut lights = SummedLights::default();
+    let ambient;
+    lights.add(setup, shading, lengths, lookup, tables);
     if VERTEX_COLOURS && let Some(albedo) = one_colour {
         ambient = tables.painted_sums(albedo);
-        (lights, colours) = (lights.painted(albedo), colours.in_ambient(&ambient));
+        lights.paint(albedo);
+        colours = colours.in_ambient(&ambient);
     }
     let lights = &lights;
     if is_steep(shading.exponent) && lights.is_visible {
