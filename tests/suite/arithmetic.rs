@@ -6,7 +6,7 @@ use microphong::stream::{
 };
 use microphong_sim::{
     bytes::StreamBytes,
-    oracle::{Frame, decides},
+    oracle::{Frame, Sight, decides},
     scene::{self, Scene},
     shader::Shader,
     stress::{arithmetic, case::Case},
@@ -36,7 +36,7 @@ fn errors(scene: &Scene, number: u32) -> Vec<f64> {
     Shader::ALL.iter().map(|&shader| error(scene, &frame, &visible, shader, number)).collect()
 }
 
-fn error(scene: &Scene, frame: &Frame, visible: &[Vec<u32>], shader: Shader, number: u32) -> f64 {
+fn error(scene: &Scene, frame: &Frame, visible: &[Vec<Sight>], shader: Shader, number: u32) -> f64 {
     let case = Case { size: [scene.size.0, scene.size.1], frame: number, style: shader.into(), ..Case::new(scene.stream.clone()) };
     // A method that cannot draw the scene makes no error.
     arithmetic::of(&case, frame, visible).unwrap_or(0.0)

@@ -279,8 +279,8 @@ fn auto_is_nearly_as_cheap_as_true_errors_allow() {
         let (width, height) = Processor::CortexM3.size();
         let frame = Frame::new(stream, (width, height), 0);
         let mut pixels: HashMap<u32, Vec<[f64; 2]>> = HashMap::new();
-        for (k, visible) in (0..).zip(frame.visible()) {
-            if let Some(&facet) = visible.first() {
+        for (k, sights) in (0..).zip(frame.visible()) {
+            if let Some(&facet) = sights.iter().flatten().next() {
                 pixels.entry(facet).or_default().push([k % width, k / width].map(|c| f64::from(c) + 0.5));
             }
         }

@@ -1,10 +1,18 @@
 //! `microphong compare`: its output, its refusals, and its page.
 
-use microphong::format::ErrorBudget;
+use crate::vertex_colours::parts;
+use embedded_graphics::prelude::Size;
+use microphong::{
+    format::ErrorBudget,
+    renderer::check,
+    stream::record::{Colour, HAS_TEXTURE, TRANSPARENCY_SHIFT, Texture, TextureCorners},
+};
 use microphong_sim::{
     bytes::StreamBytes,
     compare::{Comparison, Reference, exponent::with_exponent},
-    image, oracle, scene,
+    image, oracle,
+    render::{self, Format, Settings},
+    scene,
     shader::Shader,
 };
 use serde_json::Value;
@@ -258,8 +266,68 @@ fn pictures_are_those_of_the_renderer() {
     let stream = scene.stream.parse().expect("a stream");
     let reference = Reference::new(stream, (64, 64), 0).expect("something to see");
     let comparison = reference.compare(Shader::SIX_POINT).expect("a comparison");
-    let size = embedded_graphics::geometry::Size::new(64, 64);
+    let size = Size::new(64, 64);
     let (pixels, _) =
         microphong_sim::render::frame::<embedded_graphics::pixelcolor::Rgb888>(stream, size, Shader::SIX_POINT, 16, 0).expect("a picture");
     assert_eq!(comparison.picture.as_flattened(), image::rgb_bytes(&pixels));
+}
+
+const SEEN_THROUGH: (u32, u32) = (120, 90);
+
+/// A torus that lets through so many sixteenths of the light from behind: the background, and other parts of itself.
+fn glass(sixteenths: u8) -> StreamBytes {
+    let mut records = parts("torus");
+    records.meshes.iter_mut().for_each(|mesh| mesh.flags |= sixteenths << TRANSPARENCY_SHIFT);
+    records.written().expect("a stream")
+}
+
+/// A teapot of glass and of holes, in turns, as squares of a texture that lies across it.
+fn pierced(hole: u8) -> StreamBytes {
+    let mut records = parts("teapot");
+    records.colours = vec![Colour::new([255; 3]), Colour { hole, ..Colour::new([255; 3]) }];
+    records.texels = (0..64).map(|texel| ((texel / 8 + texel) % 2) as u8).collect();
+    records.textures = vec![Texture { size: [3, 3], palette: 0, has_holes: hole }];
+    let [mesh] = &mut records.meshes[..] else { panic!("one mesh") };
+    mesh.flags |= HAS_TEXTURE | 3 << TRANSPARENCY_SHIFT;
+    let place = |vertex: u16| {
+        let [x, y, _] = records.vertices[mesh.first_vertex as usize + usize::from(vertex)].position;
+        [x, y].map(|c| (i32::from(c) / 8 + 4_096) as u16)
+    };
+    records.texture_corners = records.triangles.iter().map(|triangle| TextureCorners(triangle.corners.map(place))).collect();
+    records.written().expect("a stream")
+}
+
+/// What is seen through surfaces is judged as exactly as all else, for each method.
+#[test]
+fn glass_and_holes_are_judged() {
+    for (kind, stream, least) in [("glass", glass(9), 2_000), ("holes", pierced(1), 500)] {
+        let stream = stream.parse().expect("a stream");
+        let reference = Reference::new(stream, SEEN_THROUGH, 0).expect("something to see");
+        let mut methods = 0;
+        for shader in Shader::ALL.into_iter().filter(|shader| check(&stream, shader.facts(), false).is_ok()) {
+            let Comparison { arithmetic, pixels, unmatched, .. } = reference.compare(shader).expect("a comparison");
+            println!("{kind:6} {:20} {:.3} LSB, {pixels} pixels", shader.name(), arithmetic.max);
+            assert!(arithmetic.max <= 0.5 && unmatched == 0 && pixels > least, "{kind}, {}: {arithmetic:?}", shader.name());
+            methods += 1;
+        }
+        assert!(methods > 20, "{kind}: {methods}");
+    }
+}
+
+/// The reference of a scene is its picture by Phong shading, and that of no scene that lets through a sixteenth more or has its holes filled in.
+#[test]
+fn the_reference_shows_what_is_seen_through_surfaces() {
+    let apart = |one: &StreamBytes, other: &StreamBytes| {
+        let reference = Reference::new(one.parse().expect("a stream"), SEEN_THROUGH, 0).expect("something to see").picture();
+        let size = Size::new(SEEN_THROUGH.0, SEEN_THROUGH.1);
+        let settings = Settings { size, style: Shader::PHONG.into(), band_rows: size.height, format: Format::Rgb888 };
+        let drawn = render::picture(other.parse().expect("a stream"), &settings, 0).expect("a picture").rgb;
+        let differences = reference.as_flattened().iter().zip(&drawn).map(|(one, other)| one.abs_diff(*other));
+        differences.filter(|&difference| difference > 2).count()
+    };
+    assert_eq!(apart(&glass(9), &glass(9)), 0);
+    assert!(apart(&glass(9), &glass(10)) > 1_000);
+    // At the borders of holes rounding decides.
+    let [same, filled] = [1, 0].map(|hole| apart(&pierced(1), &pierced(hole)));
+    assert!(20 * same < filled && filled > 2_000, "{same} {filled}");
 }

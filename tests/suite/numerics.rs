@@ -101,6 +101,7 @@ fn scene(name: &str, exponent: f64) -> Frame {
         viewer: if near { Place::Near([0.0, 0.0, 4.0]) } else { Place::Far([0.0, 0.0, 1.0]) },
         axes: [[1.0, 0.0, 0.0], [0.0, 1.0, 0.0], [0.0, 0.0, 1.0]],
         materials: vec![Material { ambient: grey(0.0), diffuse: grey(0.5), specular: grey(0.5), exponent }],
+        background: [[0.0; 3]; 2],
         is_gray: false,
     }
 }

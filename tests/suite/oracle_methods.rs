@@ -26,6 +26,7 @@ fn single(facet: Facet, light: Place, viewer: Place, exponent: f64) -> Frame {
         viewer,
         axes: [[1.0, 0.0, 0.0], [0.0, 1.0, 0.0], [0.0, 0.0, 1.0]],
         materials: vec![material],
+        background: [[0.0; 3]; 2],
         is_gray: false,
     }
 }

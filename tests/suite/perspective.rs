@@ -86,10 +86,10 @@ fn difference(levels: [f64; 3], exact: Levels) -> f64 {
 fn errors(scene: &Scene, frame: &Frame, picture: &[Option<[f64; 3]>], name: &str, every: usize, first: usize) -> (f64, f64) {
     let shades: Vec<_> = frame.facets.iter().map(|facet| method(name, frame, facet).unwrap()).collect();
     let (mut worst, mut squares, mut count) = (0f64, 0.0, 0);
-    for (i, (levels, candidates)) in picture.iter().zip(frame.visible()).enumerate().skip(first % every).step_by(every) {
+    for (i, (levels, sights)) in picture.iter().zip(frame.visible()).enumerate().skip(first % every).step_by(every) {
         let Some(levels) = *levels else { continue };
         let centre = [i as u32 % scene.size.0, i as u32 / scene.size.0].map(|c| f64::from(c) + 0.5);
-        let error = candidates.iter().map(|&c| difference(levels, shades[c as usize](centre))).fold(f64::MAX, f64::min);
+        let error = sights.iter().flatten().map(|&c| difference(levels, shades[c as usize](centre))).fold(f64::MAX, f64::min);
         // Clipped triangles have no candidates.
         if error < f64::MAX {
             (worst, squares, count) = (worst.max(error), squares + error * error, count + 1);
@@ -176,8 +176,8 @@ fn six_points_on_the_screen_are_better() {
         let exact: Vec<_> = seen.facets.iter().map(|facet| method("phong", &seen, facet).unwrap()).collect();
         let rms = |frame: &Frame| {
             let shades: Vec<_> = frame.facets.iter().map(|facet| method("six-point", frame, facet).unwrap()).collect();
-            let pixels = seen.visible().into_iter().enumerate().filter_map(|(i, candidates)| {
-                let (facet, i) = (*candidates.first()? as usize, i as u32);
+            let pixels = seen.visible().into_iter().enumerate().filter_map(|(i, sights)| {
+                let (facet, i) = (*sights.iter().flatten().next()? as usize, i as u32);
                 let centre = [i % scene.size.0, i / scene.size.0].map(|c| f64::from(c) + 0.5);
                 let (a, b) = (exact[facet](centre), shades[facet](centre));
                 Some((0..3).map(|k| (a[k] - b[k]).abs()).fold(0.0, f64::max).powi(2))

@@ -49,7 +49,8 @@ fn wrong(stream: &StreamBytes, side: u32, shader: Shader) -> usize {
         (level - exact.into_iter().fold(0.0, f64::max)).abs() <= 0.3
     };
     let pixels = drawn.into_iter().zip(frame.visible()).enumerate();
-    let wrong = pixels.filter(|(i, (levels, near))| levels.is_some_and(|levels| !near.iter().any(|&facet| right(*i, levels[0], facet))));
+    let wrong =
+        pixels.filter(|(i, (levels, near))| levels.is_some_and(|levels| !near.iter().flatten().any(|&facet| right(*i, levels[0], facet))));
     wrong.count()
 }
 

@@ -6,17 +6,33 @@ use microphong::{
     Stream,
     format::{BIAS, CHANNEL, Intensity, RAMP, WALK},
     method::{Highlight, Reflectance},
-    pixel::{Channels, Pixel, PixelFormat, ramps::Rounded},
-    stream::record::{HAS_COLOURS, Material, Mesh},
+    pixel::{Channels, Gamma, Pixel, PixelFormat, ramps::Rounded},
+    stream::record::{HAS_COLOURS, HAS_TEXTURE, Material, Mesh},
 };
 use microphong_render::{
     choices::{self, Told},
     render::{self, Style},
 };
 
-/// A pixel that keeps its levels as they come; `None` is background.
+/// A pixel that keeps its levels as they come. They are walked levels, which include half a step.
 #[derive(Clone, Copy, Debug)]
-struct Fine(Option<[u32; 3]>);
+struct Fine {
+    levels: [u32; 3],
+    /// Whether a triangle covers the pixel. Else it has the colour of the background.
+    is_drawn: bool,
+}
+
+impl Fine {
+    /// The pixel of a triangle.
+    const fn drawn(levels: [u32; 3]) -> Self {
+        Self { levels, is_drawn: true }
+    }
+}
+
+/// The walked level that is `level` in 1/255.
+const fn walked(level: u32) -> u32 {
+    ((level + BIAS as u32) << WALK) + (1 << (WALK - 1))
+}
 
 /// An entry of the table of colours of a material of one channel.
 const ONE_CHANNEL: [u32; 3] = [u32::MAX; 3];
@@ -26,8 +42,8 @@ impl PixelFormat for Fine {
     const DEPTH: [u32; 3] = [8; 3];
     const BYTES: usize = 3;
 
-    fn pack(_: [u32; 3]) -> Self {
-        Self(None)
+    fn pack(channels: [u32; 3]) -> Self {
+        Self { levels: channels.map(walked), is_drawn: false }
     }
 
     fn channels(self) -> [u8; 3] {
@@ -49,11 +65,22 @@ impl Pixel for Fine {
     const COARSE: bool = true;
 
     fn stored(self) -> [u32; 3] {
-        self.0.unwrap_or(ONE_CHANNEL)
+        self.levels
     }
 
     fn from_stored(levels: [u32; 3]) -> Self {
-        Self(Some(levels))
+        Self::drawn(levels)
+    }
+
+    fn tabled(_: [u32; 3], _: u32) -> [u32; 3] {
+        ONE_CHANNEL
+    }
+
+    fn mixed_with(self, other: Self, share: u32, _: Option<&'static Gamma>) -> Self {
+        // Beyond black and white no pixel format has levels that could be mixed.
+        let shown = |walked_level: u32| u64::from(walked_level.clamp(walked(0), walked(255)));
+        let mixed = |own: u32, other: u32| (shown(own) * u64::from(128 - share) + shown(other) * u64::from(share)) >> 7;
+        Self::drawn(std::array::from_fn(|k| mixed(self.levels[k], other.levels[k]) as u32))
     }
 
     fn entry(ramp: &[[u32; 3]; RAMP], level: u32, bits: u32) -> [u32; 3] {
@@ -70,13 +97,13 @@ impl Pixel for Fine {
     }
 
     fn quantised(intensity: Intensity, _: u32) -> Self {
-        Self(Some(intensity.map(|level| ((level as u32) << (WALK - 8)) + ((BIAS as u32) << WALK) + (1 << (WALK - 1)))))
+        Self::drawn(intensity.map(|level| ((level as u32) << (WALK - 8)) + walked(0)))
     }
 
     fn mixed(levels: [i32; 3]) -> Self {
         // Biased, and within what that leaves room for.
         let level = |level: i32| level.clamp(-BIAS << CHANNEL, (2 * BIAS + 127) << CHANNEL) + (BIAS << CHANNEL);
-        Self(Some(levels.map(|walked| (level(walked) as u32) << (WALK - CHANNEL))))
+        Self::drawn(levels.map(|walked| (level(walked) as u32) << (WALK - CHANNEL)))
     }
 }
 
@@ -84,7 +111,7 @@ impl Pixel for Fine {
 #[must_use]
 pub fn is_one_channel(stream: &Stream<'_>, material: &Material) -> bool {
     let mut reflectance = Box::new(Reflectance::EMPTY);
-    let has_colours = |mesh: &&Mesh| mesh.flags & HAS_COLOURS != 0;
+    let has_colours = |mesh: &&Mesh| mesh.flags & (HAS_COLOURS | HAS_TEXTURE) != 0;
     let is_coloured =
         stream.meshes.iter().filter(has_colours).any(|mesh| stream.materials.get(usize::from(mesh.material)) == Some(material));
     reflectance.fill(Channels::of::<Fine>(), stream.header.ambient, material, stream.lights, (Highlight::Half, false), is_coloured);
@@ -101,13 +128,14 @@ pub fn choices(stream: Stream<'_>, size: Size, style: Style, number: u32) -> Res
 
 /// Levels of red, green and blue, where 255 is full, row by row from the top; `None` where nothing is drawn.
 ///
-/// Where the renderer walks one level for all channels, all three have the level of the brightest channel.
+/// Where the renderer walks one level for all channels, all three have the level of the brightest channel. A transparent surface mixes these levels with
+/// what is behind it.
 ///
 /// # Errors
 /// When `size` is out of range, or the scene cannot be drawn in this style.
 pub fn picture(stream: Stream<'_>, size: Size, style: impl Into<Style>, number: u32) -> Result<Vec<Option<[f64; 3]>>> {
     let (pixels, _) = render::frame::<Fine>(stream, size, style, size.height, number)?;
     // The half that rounds, and the guards below black.
-    let level = |walked: u32| ((f64::from(walked) - f64::from(1 << (WALK - 1))) / f64::from(1 << WALK) - f64::from(BIAS)).clamp(0.0, 255.0);
-    Ok(pixels.into_iter().map(|Fine(levels)| levels.map(|levels| levels.map(level))).collect())
+    let level = |level: u32| ((f64::from(level) - f64::from(walked(0))) / f64::from(1 << WALK)).clamp(0.0, 255.0);
+    Ok(pixels.into_iter().map(|pixel| pixel.is_drawn.then(|| pixel.levels.map(level))).collect())
 }

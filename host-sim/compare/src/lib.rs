@@ -17,8 +17,8 @@ use edges::Edges;
 pub use edges::Jumps;
 use embedded_graphics_core::{geometry::Size, pixelcolor::Rgb565};
 use figures::Spread;
-use microphong::{Stream, features::Feature, renderer::check};
-use microphong_oracle::{self as oracle, Facet, Frame, Levels};
+use microphong::{Stream, renderer::check};
+use microphong_oracle::{self as oracle, Facet, Frame, Levels, MOST_OUTCOMES};
 use microphong_render::{
     choices::{self, Choices},
     render::{self, Format, Settings, Style},
@@ -26,7 +26,7 @@ use microphong_render::{
 };
 use operations::Operations;
 use samples::Samples;
-use std::ops::Range;
+use std::{collections::HashSet, ops::Range};
 
 /// A difference, in 1/255, beyond which a method that makes decisions is also compared with the results of other decisions.
 pub const UNDECIDED: f64 = 0.25;
@@ -40,21 +40,24 @@ pub struct Reference<'s> {
     frame: Frame,
     /// Per material: the core draws it in one channel.
     one_channel: Vec<bool>,
-    /// Per pixel where its candidates start, and at last where they end.
-    starts: Vec<usize>,
-    /// The facet of each candidate.
-    facets: Vec<usize>,
-    /// All candidates of all pixels.
+    /// Per pixel what may be seen there.
+    sights: Vec<Vec<Sight>>,
+    /// The facet of each sample.
+    facets: Vec<u32>,
+    /// All facets that may be seen in a pixel, for all pixels.
     samples: Samples,
-    /// Phong's levels of each candidate.
+    /// Phong's levels of each sample.
     phong: Vec<Levels>,
     edges: Edges,
     window: Window,
     row: u32,
 }
 
+/// The samples that are seen in a pixel, in the order of drawing; none where the background is seen.
+type Sight = Vec<usize>;
+
 /// A part of the picture.
-#[derive(Clone, Debug, PartialEq, Eq)]
+#[derive(Clone, Debug, Default, PartialEq, Eq)]
 pub struct Window {
     /// Columns, from left to right.
     pub columns: Range<u32>,
@@ -118,29 +121,34 @@ impl<'s> Reference<'s> {
 
     fn of(stream: Stream<'s>, frame: Frame, number: u32, perspective_correct: bool) -> Result<Self> {
         ensure!(stream.instances.is_empty(), "the scene has several objects, and the reference draws one: compare their meshes one by one");
-        let is_opaque = !Feature::Transparency.is_needed_by(&stream, &Format::Rgb888.channels());
-        ensure!(is_opaque, "the scene has transparent surfaces or holes, and the reference draws neither: convert it by --opaque");
-        let size = frame.size;
-        let (mut starts, mut facets, mut points) = (vec![0], Vec::new(), Vec::new());
-        let mut shown = vec![false; frame.facets.len()];
-        for (pixel, candidates) in (0..).zip(frame.visible()) {
-            let [x, y] = [pixel % size.0, pixel / size.0].map(|c| f64::from(c) + 0.5);
-            for facet in candidates {
-                let facet = facet as usize;
-                facets.push(facet);
-                points.push((facet, [x, y]));
-                if let Some(shown) = shown.get_mut(facet) {
-                    *shown = true;
-                }
-            }
-            starts.push(facets.len());
+        let (mut sights, mut facets, mut points) = (Vec::new(), Vec::new(), Vec::new());
+        for (pixel, visible) in (0..).zip(frame.visible()) {
+            let centre = [pixel % frame.size.0, pixel / frame.size.0].map(|c| f64::from(c) + 0.5);
+            let first = facets.len();
+            let mut sample = |facet| {
+                let known = facets[first..].iter().position(|&known| known == facet);
+                known.map_or_else(
+                    || {
+                        facets.push(facet);
+                        points.push((facet as usize, centre));
+                        facets.len() - 1
+                    },
+                    |known| first + known,
+                )
+            };
+            sights.push(visible.into_iter().map(|sight| sight.into_iter().map(&mut sample).collect()).collect());
         }
         let samples = Samples::new(&frame, points);
         let phong = samples.shade(&frame, &|facet| Ok(oracle::phong(&frame, facet)))?;
-        let edges = Edges::new(&frame, |facet| shown.get(facet) == Some(&true));
+        let shown: HashSet<u32> = facets.iter().copied().collect();
+        let edges = Edges::new(&frame, |facet| shown.contains(&(facet as u32)));
         let one_channel = stream.materials.iter().map(|material| level::is_one_channel(&stream, material)).collect();
-        let (window, row) = ends(&starts, &phong, size).context("no pixel shows a triangle")?;
-        Ok(Self { stream, number, perspective_correct, frame, one_channel, starts, facets, samples, phong, edges, window, row })
+        let (window, row) = (Window::default(), 0);
+        let mut reference =
+            Self { stream, number, perspective_correct, frame, one_channel, sights, facets, samples, phong, edges, window, row };
+        let levels: Vec<_> = (0..reference.sights.len()).map(|pixel| reference.level_of(pixel)).collect();
+        (reference.window, reference.row) = ends(&levels, reference.frame.size).context("no pixel shows a triangle")?;
+        Ok(reference)
     }
 
     /// Width and height of the picture.
@@ -164,51 +172,71 @@ impl<'s> Reference<'s> {
     /// Phong's level of the brightest channel; `None` is background.
     #[must_use]
     pub fn level(&self, x: u32, y: u32) -> Option<f64> {
-        self.nearest(y as usize * self.frame.size.0 as usize + x as usize).map(|sample| brightest(self.phong[sample]))
+        self.level_of(y as usize * self.frame.size.0 as usize + x as usize)
+    }
+
+    fn level_of(&self, pixel: usize) -> Option<f64> {
+        let sight = self.sights.get(pixel)?.first().filter(|sight| !sight.is_empty())?;
+        Some(brightest(self.light(pixel, sight, &self.phong)))
     }
 
     /// Phong's picture in 8 bits per channel, row by row from the top.
     #[must_use]
     pub fn picture(&self) -> Vec<[u8; 3]> {
-        let pixels = 0..self.starts.len() - 1;
-        pixels.map(|pixel| self.nearest(pixel).map_or(self.stream.header.background, |sample| rounded(self.phong[sample]))).collect()
+        self.sights.iter().enumerate().map(|(pixel, sights)| self.shown(pixel, &sights[0])).collect()
     }
 
-    fn candidates(&self, pixel: usize) -> Range<usize> {
-        match self.starts.get(pixel..) {
-            Some(&[start, end, ..]) => start..end,
-            _ => 0..0,
-        }
+    /// Phong shading of a sight of a pixel, in 8 bits per channel.
+    fn shown(&self, pixel: usize, sight: &[usize]) -> [u8; 3] {
+        let seen = sight.iter().map(|&sample| (self.facets[sample], self.phong[sample]));
+        rounded(self.frame.mixed(self.row_of(pixel), seen))
     }
 
-    fn nearest(&self, pixel: usize) -> Option<usize> {
-        self.candidates(pixel).next()
+    fn row_of(&self, pixel: usize) -> u32 {
+        pixel as u32 / self.frame.size.0
     }
 
-    /// The difference of levels from candidate `sample`, in the channel that differs most.
-    fn error(&self, sample: usize, of: Levels, from: Levels) -> f64 {
-        let material = self.facets.get(sample).and_then(|&facet| self.frame.facets.get(facet)).map_or(0, |facet| facet.material);
-        if self.one_channel.get(material) == Some(&true) {
-            brightest(of) - brightest(from)
-        } else {
-            let errors: Levels = std::array::from_fn(|k| of[k] - from[k]);
-            errors.into_iter().fold(0.0, |worst, error| if error.abs() <= f64::abs(worst) { worst } else { error })
-        }
+    /// Every sight of a pixel in which a facet is seen, what is exactly seen first.
+    fn drawn(&self, pixel: usize) -> impl Iterator<Item = &Sight> {
+        self.sights[pixel].iter().filter(|sight| !sight.is_empty())
     }
 
-    /// The candidate of a pixel that is closest to these levels, and its difference. Of triangles at equal depth the integers may show any.
-    fn best(&self, pixel: usize, level: Levels) -> Option<(usize, f64)> {
-        let errors = self.candidates(pixel).map(|sample| (sample, self.error(sample, level, self.phong[sample])));
+    /// The facet of a sample.
+    fn facet(&self, sample: usize) -> &Facet {
+        &self.frame.facets[self.facets[sample] as usize]
+    }
+
+    /// The levels of a facet as [`level::picture`] has them: those of the brightest channel for all, where the core draws one.
+    fn walked(&self, facet: &Facet, levels: Levels) -> Levels {
+        if self.one_channel.get(facet.material) == Some(&true) { [brightest(levels); 3] } else { levels }
+    }
+
+    /// The light of a sight of a pixel, as [`level::picture`] has it, if samples have these levels.
+    fn light(&self, pixel: usize, sight: &[usize], levels: &[Levels]) -> Levels {
+        self.lights(pixel, sight, &|sample| vec![levels[sample]])[0]
+    }
+
+    /// The lights that a sight of a pixel may have if each of its samples has one of several `outcomes`. There are at most [`MOST_OUTCOMES`].
+    fn lights(&self, pixel: usize, sight: &[usize], outcomes: &dyn Fn(usize) -> Vec<Levels>) -> Vec<Levels> {
+        sight.iter().fold(vec![self.frame.background(self.row_of(pixel))], |behind, &sample| {
+            let (facet, surfaces) = (self.facet(sample), outcomes(sample));
+            let over = |&surface: &Levels| behind.iter().map(move |&behind| facet.over(self.walked(facet, surface), behind));
+            surfaces.iter().flat_map(over).take(MOST_OUTCOMES).collect()
+        })
+    }
+
+    /// The sight of a pixel whose Phong shading is closest to these levels, and the difference. Of triangles at equal depth the integers may show any.
+    fn best(&self, pixel: usize, level: Levels) -> Option<(&Sight, f64)> {
+        let errors = self.drawn(pixel).map(|sight| (sight, error(level, self.light(pixel, sight, &self.phong))));
         errors.min_by(|a, b| a.1.abs().total_cmp(&b.1.abs()))
     }
 
-    /// All results that a method may have for a candidate of a pixel, see [`oracle::outcomes`].
+    /// All results that a method may have for a sample of a pixel, see [`oracle::outcomes`].
     fn outcomes(&self, sample: usize, pixel: usize, name: &str) -> Vec<Levels> {
         let width = self.frame.size.0 as usize;
         let centre = [pixel % width, pixel / width].map(|c| c as f64 + 0.5);
-        let facet = self.facets.get(sample).and_then(|&facet| self.frame.facets.get(facet));
-        let outcomes = facet.and_then(|facet| oracle::outcomes(name, &self.frame, facet, centre, self.frame.undecided(facet)).ok());
-        outcomes.unwrap_or_default()
+        let facet = self.facet(sample);
+        oracle::outcomes(name, &self.frame, facet, centre, self.frame.undecided(facet)).unwrap_or_default()
     }
 
     /// [`Comparison::total`] only, which is quick.
@@ -247,31 +275,30 @@ impl<'s> Reference<'s> {
 
         let mut errors = vec![None; integers.len()];
         let (mut total, mut method, mut arithmetic) = (Vec::new(), Vec::new(), Vec::new());
-        let mut target = vec![self.stream.header.background; integers.len()];
+        let mut target: Vec<_> = (0..integers.len()).map(|pixel| self.shown(pixel, &[])).collect();
         let (mut pairs, mut unmatched) = (Vec::new(), 0);
         for (pixel, &level) in integers.iter().enumerate() {
-            let candidates = self.candidates(pixel);
-            let (Some(level), Some(nearest)) = (level, self.nearest(pixel)) else {
-                unmatched += usize::from(level.is_some() || !candidates.is_empty());
+            let Some(level) = level else {
+                unmatched += usize::from(!self.sights[pixel].iter().any(Vec::is_empty));
                 continue;
             };
-            let Some((sample, error)) = self.best(pixel, level) else { continue };
-            errors[pixel] = Some(error);
-            total.push(error);
-            method.push(self.error(nearest, real[nearest], self.phong[nearest]));
-            let same = |outcomes: &dyn Fn(usize) -> Vec<Levels>| {
-                let errors = candidates.clone().map(|sample| {
-                    let errors = outcomes(sample).into_iter().map(|real| self.error(sample, level, real).abs());
-                    errors.fold(f64::INFINITY, f64::min)
-                });
-                errors.fold(f64::INFINITY, f64::min)
+            let (Some(exact), Some((sight, difference))) = (self.drawn(pixel).next(), self.best(pixel, level)) else {
+                unmatched += 1;
+                continue;
             };
-            let mut error = same(&|sample| vec![real[sample]]);
-            if error > UNDECIDED && oracle::decides(name) {
-                error = same(&|sample| self.outcomes(sample, pixel, name));
+            errors[pixel] = Some(difference);
+            total.push(difference);
+            method.push(error(self.light(pixel, exact, &real), self.light(pixel, exact, &self.phong)));
+            let same = |outcomes: &dyn Fn(usize) -> Vec<Levels>| {
+                let lights = self.drawn(pixel).flat_map(|sight| self.lights(pixel, sight, outcomes));
+                lights.map(|light| error(level, light).abs()).fold(f64::INFINITY, f64::min)
+            };
+            let mut off = same(&|sample| vec![real[sample]]);
+            if off > UNDECIDED && oracle::decides(name) {
+                off = same(&|sample| self.outcomes(sample, pixel, name));
             }
-            arithmetic.push(error);
-            target[pixel] = rounded(self.phong[sample]);
+            arithmetic.push(off);
+            target[pixel] = self.shown(pixel, sight);
             pairs.push([picture[pixel], target[pixel]]);
         }
         let spread = |errors: &[f64]| Spread::of(errors).with_context(|| format!("{name} has drawn nothing"));
@@ -323,12 +350,17 @@ impl Window {
 /// Number of pixels that stay free around the object.
 const SPACE: u32 = 4;
 
-/// The rectangle around all pixels that show something, and the row through the middle of the brightest.
-fn ends(starts: &[usize], phong: &[Levels], (width, height): (u32, u32)) -> Option<(Window, u32)> {
-    let shown: Vec<_> = (0..).zip(starts.array_windows()).filter(|(_, [start, end])| start < end).collect();
-    let level = |&(_, [start, _]): &(u32, &[usize; 2])| phong.get(*start).copied().map_or(0.0, brightest);
-    let most = shown.iter().map(level).fold(0.0, f64::max);
-    let bright: Vec<_> = shown.iter().filter(|pixel| level(pixel) >= most - 0.5).collect();
+/// The difference of levels from others, in the channel that differs most.
+fn error(of: Levels, from: Levels) -> f64 {
+    let errors: Levels = std::array::from_fn(|k| of[k] - from[k]);
+    errors.into_iter().fold(0.0, |worst, error| if error.abs() <= f64::abs(worst) { worst } else { error })
+}
+
+/// The rectangle around all pixels that have a level, and the row through the middle of the brightest.
+fn ends(levels: &[Option<f64>], (width, height): (u32, u32)) -> Option<(Window, u32)> {
+    let shown: Vec<(u32, f64)> = (0..).zip(levels).filter_map(|(pixel, &level)| Some((pixel, level?))).collect();
+    let most = shown.iter().map(|(_, level)| *level).fold(0.0, f64::max);
+    let bright: Vec<_> = shown.iter().filter(|(_, level)| *level >= most - 0.5).collect();
     let row = bright.get(bright.len() / 2)?.0 / width;
     let range = |of: fn(u32, u32) -> u32, limit: u32| {
         let places = || shown.iter().map(|(pixel, _)| of(*pixel, width));

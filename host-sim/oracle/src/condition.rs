@@ -131,6 +131,7 @@ mod tests {
                 viewer,
                 axes: Facet::CORNERS,
                 materials: vec![material],
+                background: [[0.0; 3]; 2],
                 is_gray: false,
             }
             .weakening(&facet, point)
@@ -155,6 +156,7 @@ mod tests {
             viewer,
             axes: Facet::CORNERS,
             materials: vec![Material { ambient: [0.0; 3], diffuse: [0.5; 3], specular: [1.0; 3], exponent: 8.0 }],
+            background: [[0.0; 3]; 2],
             is_gray: false,
         };
         let above = Place::Far([0.0, 0.0, 1.0]);

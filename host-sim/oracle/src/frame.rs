@@ -1,6 +1,8 @@
 //! The triangles of one frame that face the viewer, where they lie on the screen, and what shines on them.
 
 use super::{
+    Levels,
+    scanline::lerp,
     scene::{Light, Material, Place, direction},
     texture::Texture,
 };
@@ -34,6 +36,8 @@ pub struct Frame {
     pub axes: [V3; 3],
     /// Materials in the stream's order.
     pub materials: Vec<Material>,
+    /// Colours of the first and of the last row where nothing is drawn, in 1/255. All other rows lie evenly between them.
+    pub background: [Levels; 2],
     /// Whether pixels are grey: all light is its luma, and so are the colours of surfaces.
     pub is_gray: bool,
 }
@@ -64,6 +68,8 @@ pub struct Facet {
     pub plane: V3,
     /// No interpolated normal is shorter.
     pub min_normal_length: f64,
+    /// The part of the light from behind that the facet lets through.
+    pub transparency: f64,
     /// Index of the material.
     pub material: usize,
     /// Index of the triangle in the stream.
@@ -144,14 +150,29 @@ impl Frame {
             viewer,
             axes: [direction(right), direction(up), towards],
             materials: materials.collect(),
+            background: [stream.header.background, stream.header.background_bottom].map(|colour| colour.map(f64::from)),
             is_gray: false,
         }
     }
 
-    /// This frame in greys.
+    /// This frame in greys. The grey of a background is a whole number.
     #[must_use]
     pub fn in_greys(self) -> Self {
-        Self { is_gray: true, ..self }
+        let gray = Self { is_gray: true, ..self };
+        Self { background: gray.background.map(|colour| gray.shown(colour).map(f64::floor)), ..gray }
+    }
+
+    /// The colour of a row where nothing is drawn.
+    #[must_use]
+    pub fn background(&self, row: u32) -> Levels {
+        let [top, bottom] = self.background;
+        lerp(top, bottom, f64::from(row) / f64::from(self.size.1.max(2) - 1))
+    }
+
+    /// The light of a pixel of `row` in which these facets are seen, in the order of drawing, each with its own light.
+    #[must_use]
+    pub fn mixed(&self, row: u32, seen: impl IntoIterator<Item = (u32, Levels)>) -> Levels {
+        seen.into_iter().fold(self.background(row), |behind, (facet, light)| self.facets[facet as usize].over(light, behind))
     }
 
     /// A frame as [`Self::new`] makes it, in which methods take the point of the triangle that is seen. [`Self::new`] takes the point that divides
@@ -219,6 +240,7 @@ fn facet(stream: Stream<'_>, mesh: &record::Mesh, triangle: &record::Triangle, i
         is_painted: false,
         plane: real(triangle.normal, UNIT),
         min_normal_length: f64::from(triangle.min_normal_length) / f64::from(NORMAL_LENGTH).exp2(),
+        transparency: f64::from(mesh.transparency()) / 16.0,
         material: mesh.material.into(),
         id,
     })
@@ -246,9 +268,16 @@ impl Facet {
             is_painted: false,
             plane: direction(cross(sub(c, a), sub(b, a))),
             min_normal_length: shortest(&normals),
+            transparency: 0.0,
             material: 0,
             id: 0,
         }
+    }
+
+    /// The light of a pixel that the facet covers with this light, in front of what was there before.
+    #[must_use]
+    pub fn over(&self, light: Levels, behind: Levels) -> Levels {
+        lerp(light, behind, self.transparency)
     }
 
     /// Affine coordinates of the point that is seen at a point of the screen: the corners' shares, whose sum is one.

@@ -22,6 +22,7 @@ pub use method::{MOST_OUTCOMES, NAMES, Unsupported, chosen, decides, method, out
 pub(crate) use poly::{SIX, TEN, cubic, quadratic, sum};
 pub use scene::{Light, Material, Place};
 pub use texture::Texture;
+pub use visible::Sight;
 
 /// Red, green and blue; 255 is full. Clamped to [0, 255].
 pub type Levels = [f64; 3];

@@ -177,6 +177,7 @@ mod tests {
             viewer: Place::Far([0.0, 0.0, 1.0]),
             axes: Facet::CORNERS,
             materials: vec![material],
+            background: [[0.0; 3]; 2],
             is_gray: false,
         }
     }

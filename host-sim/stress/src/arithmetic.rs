@@ -13,7 +13,7 @@ use crate::{
 use embedded_graphics_core::pixelcolor::{Gray8, GrayColor};
 use microphong::{Stream, renderer};
 use microphong_compare::{UNDECIDED, level};
-use microphong_oracle::{Facet, Frame, Levels, MOST_OUTCOMES, Shade, chosen, decides, method, outcomes};
+use microphong_oracle::{Facet, Frame, Levels, MOST_OUTCOMES, Shade, Sight, chosen, decides, method, outcomes};
 use microphong_render::{
     choices::{self, Chosen, Way},
     render::{self, Format, Style},
@@ -24,10 +24,6 @@ use microphong_render::{
 pub const LIMIT: f64 = 0.5;
 /// Distance, in affine coordinates, at which a pixel's centre counts as on the border of two parts of a triangle. Either part may show there.
 const NUDGE: f64 = 1e-6;
-
-/// How far a place in a texture may be off, in texels: a quarter by its interpolation on the screen, and the rest by the arithmetic of large and thin
-/// triangles.
-const BESIDE: f64 = 0.5;
 
 /// Random scenes, by a random method.
 pub struct Arithmetic;
@@ -66,7 +62,7 @@ impl Family for Arithmetic {
     }
 }
 
-/// Triangles side by side, of all of which something is seen, or a scene of any kind, two of three of them hard, by a method that can draw it;
+/// Triangles side by side, of all of which something is seen, or a scene of any kind, two of three of them hard, by a method that can draw it.
 /// `None` if it would not make a valid stream.
 pub fn case(random: &mut Random) -> Option<Case> {
     let hard = if random.once_in(3) { Hard::default() } else { Hard::random(random) };
@@ -137,7 +133,7 @@ fn interpolates_light(name: &str) -> bool {
     matches!(name, "flat" | "gouraud" | "gouraud4" | "six-point" | "six-point-adaptive" | "six-point-centre" | "cubic")
 }
 
-/// Judges each pixel of a frame by its sensitivity; `None` if the method cannot draw it.
+/// Judges each pixel of a frame by its sensitivity; `None` if the method cannot draw it, or if a surface is transparent.
 #[must_use]
 pub fn judge(case: &Case) -> Option<Found> {
     let (stream, size) = (case.stream.parse().ok()?, (case.size[0], case.size[1]));
@@ -215,14 +211,14 @@ pub(crate) fn error(
     if facet.texture.is_none() || error <= UNDECIDED {
         return error;
     }
-    let others = facet.within(point, BESIDE).into_iter();
+    let others = facet.within(point).into_iter();
     others.filter_map(|facet| Some(difference(frame, &facet, drawn, beside(&facet)?))).fold(error, f64::min)
 }
 
 /// Largest difference of a frame from its method in floating point, in 1/255, before the output format rounds; infinite where a pixel is
-/// missing. The frame is known already, and what may be seen at each of its pixels. `None` if the method cannot draw it.
+/// missing. The frame is known already, and what may be seen at each of its pixels. `None` if the method cannot draw it, or if a surface is transparent.
 #[must_use]
-pub fn of(case: &Case, frame: &Frame, visible: &[Vec<u32>]) -> Option<f64> {
+pub fn of(case: &Case, frame: &Frame, visible: &[Vec<Sight>]) -> Option<f64> {
     Some(pixels(case, frame, visible)?.iter().map(Pixel::least).fold(0.0, f64::max))
 }
 
@@ -248,38 +244,45 @@ fn is_gray(case: &Case) -> bool {
     case.format == Format::Gray8
 }
 
-/// The levels of a frame, pixel by pixel; none where nothing is drawn. Greys are those of pixels, which are rounded, and count as drawn where a facet
-/// is `visible`. `None` if the method cannot draw it.
-fn levels(case: &Case, stream: Stream<'_>, visible: &[Vec<u32>]) -> Option<Vec<Option<[f64; 3]>>> {
+/// The levels of a frame, pixel by pixel; none where nothing is drawn. Greys are those of pixels, which are rounded. They count as drawn unless they are
+/// those of the background, where it may be `visible`. `None` if the method cannot draw it.
+fn levels(case: &Case, frame: &Frame, stream: Stream<'_>, visible: &[Vec<Sight>]) -> Option<Vec<Option<[f64; 3]>>> {
     if !is_gray(case) {
         return level::picture(stream, case.pixels(), case.style, case.frame).ok();
     }
     let (pixels, _) = render::frame::<Gray8>(stream, case.pixels(), case.style, case.size[1], case.frame).ok()?;
-    let level = |(pixel, seen): (&Gray8, &Vec<u32>)| (!seen.is_empty()).then(|| [f64::from(pixel.luma()); 3]);
-    Some(pixels.iter().zip(visible).map(level).collect())
+    let level = |((k, pixel), sights): ((u32, &Gray8), &Vec<Sight>)| {
+        let level = [f64::from(pixel.luma()); 3];
+        let is_background = sights.iter().any(Vec::is_empty) && (level[0] - frame.background(k / case.size[0])[0]).abs() < 0.5;
+        (!is_background).then_some(level)
+    };
+    Some((0..).zip(&pixels).zip(visible).map(level).collect())
 }
 
-/// Compares all pixels of a frame with its method in floating point.
-fn pixels(case: &Case, frame: &Frame, visible: &[Vec<u32>]) -> Option<Vec<Pixel>> {
+/// Compares all pixels of a frame with its method in floating point. `None` if the method cannot draw it, or if a surface is transparent: this judges one
+/// facet in a pixel.
+fn pixels(case: &Case, frame: &Frame, visible: &[Vec<Sight>]) -> Option<Vec<Pixel>> {
+    if frame.facets.iter().any(|facet| facet.transparency > 0.0) {
+        return None;
+    }
     let shader = case.style.shader;
     let stream = case.stream.parse().ok()?;
     let ways = ways(case, stream)?;
     let shades: Vec<Shade<'_>> = frame.facets.iter().map(|facet| shade(case, frame, facet, &ways)).collect::<Option<_>>()?;
-    let drawn = levels(case, stream, visible)?;
+    let drawn = levels(case, frame, stream, visible)?;
     let rounding = if is_gray(case) { 0.5 } else { 0.0 };
     let mut pixels = Vec::new();
-    for (i, (levels, candidates)) in drawn.iter().zip(visible).enumerate() {
+    for (i, (levels, sights)) in drawn.iter().zip(visible).enumerate() {
         let centre = [i as u32 % case.size[0], i as u32 / case.size[0]].map(|c| f64::from(c) + 0.5);
-        let levels = match *levels {
-            Some(levels) if !candidates.is_empty() => levels,
-            None if candidates.is_empty() => continue,
-            _ => {
+        let Some(levels) = *levels else {
+            if !sights.iter().any(Vec::is_empty) {
                 pixels.push(Pixel { centre, errors: Vec::new(), is_undecidable: false });
-                continue;
             }
+            continue;
         };
-        let errors = candidates
+        let errors = sights
             .iter()
+            .flatten()
             .map(|&c| {
                 let facet = &frame.facets[c as usize];
                 let beside = |facet: &Facet| Some(shade(case, frame, facet, &ways)?(centre));

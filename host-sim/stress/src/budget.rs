@@ -95,7 +95,8 @@ pub fn judge(case: &Case) -> Option<Found> {
     let right = allowed(stream.header.budget().to_num(), frame.lights.len());
     let mut shades: HashMap<u32, (Shade<'_>, bool)> = HashMap::new();
     let mut worst = 0f64;
-    for (pixel, candidates) in (0..).zip(frame.visible()) {
+    for (pixel, sights) in (0..).zip(frame.visible()) {
+        let candidates = sights.concat();
         let (levels, phongs) = match (drawn[pixel as usize], by_phong[pixel as usize]) {
             (Some(levels), Some(phongs)) if !candidates.is_empty() => (levels, phongs),
             (None, None) if candidates.is_empty() => continue,

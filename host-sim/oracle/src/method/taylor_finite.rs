@@ -90,6 +90,7 @@ mod tests {
             viewer: Place::Near([0.5, 0.0, 1.5]),
             axes: Facet::CORNERS,
             materials: vec![glossy],
+            background: [[0.0; 3]; 2],
             is_gray: false,
         };
         let sums = positions.map(|p| {

@@ -340,6 +340,7 @@ fn frame(side: u32, facets: Vec<Facet>, light: Place, viewer: Place, material: M
         viewer,
         axes: [[1.0, 0.0, 0.0], [0.0, 1.0, 0.0], [0.0, 0.0, 1.0]],
         materials: vec![material],
+        background: [[0.0; 3]; 2],
         is_gray: false,
     }
 }

@@ -52,7 +52,7 @@ pub(super) fn claims() -> Result<Vec<Claim>> {
     let width = frame.size.0;
     let mut pixels: Vec<_> = (0..)
         .zip(frame.visible())
-        .filter_map(|(at, facets): (u32, _)| Some((*facets.first()? as usize, [at % width, at / width])))
+        .filter_map(|(at, sights): (u32, _)| Some((*sights.iter().flatten().next()? as usize, [at % width, at / width])))
         .collect();
     pixels.sort_unstable();
     let ours = correctness(&frame, &pixels)?;
