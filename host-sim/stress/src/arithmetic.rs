@@ -8,7 +8,7 @@ use crate::{
     case::Case,
     random::Random,
     scenes::{self, Hard, Wishes},
-    tiles,
+    tiles, transparency,
 };
 use embedded_graphics_core::pixelcolor::{Gray8, GrayColor};
 use microphong::{Stream, renderer};
@@ -62,8 +62,8 @@ impl Family for Arithmetic {
     }
 }
 
-/// Triangles side by side, of all of which something is seen, or a scene of any kind, two of three of them hard, by a method that can draw it.
-/// `None` if it would not make a valid stream.
+/// Triangles side by side, of all of which something is seen, or a scene of any kind, two of three of them hard, by a method that can draw it. Half of all
+/// textures have holes. `None` if it would not make a valid stream.
 pub fn case(random: &mut Random) -> Option<Case> {
     let hard = if random.once_in(3) { Hard::default() } else { Hard::random(random) };
     let case = if random.once_in(2) {
@@ -71,6 +71,7 @@ pub fn case(random: &mut Random) -> Option<Case> {
     } else {
         scenes::case(random, Wishes { closed: false, unclipped: true, triangles: 200, hard })
     }?;
+    let case = Case { stream: transparency::sometimes_pierced(random, case.stream), ..case };
     let style = Style { antialias: false, dither: false, ..case.style };
     let stream = case.stream.parse().ok()?;
     let can_draw = |shader: &Shader| renderer::check(&stream, shader.facts(), style.perspective_correct).is_ok();
@@ -311,4 +312,47 @@ fn pixels(case: &Case, frame: &Frame, visible: &[Vec<Sight>]) -> Option<Vec<Pixe
         pixels.push(pixel);
     }
     Some(pixels)
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::records::Records;
+    use microphong_models::bytes::StreamBytes;
+
+    /// The stream with all holes filled in.
+    fn filled(stream: &StreamBytes) -> StreamBytes {
+        let mut records = Records::of(&stream.parse().unwrap());
+        records.textures.iter_mut().for_each(|texture| texture.has_holes = 0);
+        records.colours.iter_mut().for_each(|colour| colour.hole = 0);
+        records.written().unwrap()
+    }
+
+    /// Random scenes have holes. All of their pixels are right. In many scenes some would be wrong if the holes were filled in; in others texels are
+    /// so small that rounding decides everywhere.
+    #[test]
+    fn holes_are_judged() {
+        let (mut pierced, mut seen) = (0, 0);
+        for number in 0..1_500 {
+            let Some(case) = case(&mut Random::new(8, number)) else { continue };
+            if !case.stream.parse().unwrap().textures().list.iter().any(|texture| texture.has_holes != 0) {
+                continue;
+            }
+            let Some(found) = judge(&case) else { continue };
+            assert!(found.error <= LIMIT, "case {number}: {found:?}");
+            let other = Case { stream: filled(&case.stream), ..case.clone() };
+            pierced += 1;
+            seen += u32::from(is_wrong(&other, &case));
+        }
+        println!("{pierced} scenes with holes, of which {seen} show them");
+        assert!(pierced > 40 && 4 * seen > pierced, "{seen} of {pierced}");
+    }
+
+    /// Whether a pixel of `drawn` covers what is a hole in the scene that is `right`, or the other way round.
+    fn is_wrong(drawn: &Case, right: &Case) -> bool {
+        let (stream, size) = (right.stream.parse().unwrap(), (right.size[0], right.size[1]));
+        let frame = Frame::new(stream, size, right.frame);
+        let frame = if is_gray(right) { frame.in_greys() } else { frame };
+        of(drawn, &frame, &frame.visible()).is_some_and(|error| error == f64::INFINITY)
+    }
 }

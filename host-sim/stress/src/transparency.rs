@@ -1,4 +1,4 @@
-//! Random transparent meshes and holes in textures, in scenes whose light no oracle judges.
+//! Random transparent meshes and holes in textures.
 
 use crate::{random::Random, records::Records};
 use microphong::stream::record::{Mesh, TRANSPARENCY_SHIFT};
@@ -24,11 +24,31 @@ fn seen_through(random: &mut Random, stream: &StreamBytes) -> Option<StreamBytes
         *mesh = Mesh { flags: mesh.flags | transparency << TRANSPARENCY_SHIFT, ..*mesh };
     }
     if random.once_in(2) {
-        records.textures.iter_mut().for_each(|texture| texture.has_holes = 1);
-        let share = random.pick(1..6);
-        records.colours.iter_mut().for_each(|colour| colour.hole = u8::from(random.once_in(share)));
+        pierce(random, &mut records);
     }
     records.written()
+}
+
+/// In half of all cases, makes some colours of the textures of a stream holes. All else of the stream is the same.
+pub(crate) fn sometimes_pierced(random: &Random, stream: StreamBytes) -> StreamBytes {
+    let mut aside = random.aside(1 << 34);
+    if !aside.once_in(2) {
+        return stream;
+    }
+    pierced(&mut aside, &stream).unwrap_or(stream)
+}
+
+fn pierced(random: &mut Random, stream: &StreamBytes) -> Option<StreamBytes> {
+    let mut records = Records::of(&stream.parse().ok()?);
+    pierce(random, &mut records);
+    records.written()
+}
+
+/// Makes some colours of all textures holes.
+fn pierce(random: &mut Random, records: &mut Records) {
+    records.textures.iter_mut().for_each(|texture| texture.has_holes = 1);
+    let share = random.pick(1..6);
+    records.colours.iter_mut().for_each(|colour| colour.hole = u8::from(random.once_in(share)));
 }
 
 #[cfg(test)]
