@@ -54,7 +54,13 @@ fn pierce(random: &mut Random, records: &mut Records) {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::scenes::{self, Hard, Wishes};
+    use crate::{
+        arithmetic::{LIMIT, PER_LIGHT},
+        scenes::{self, Hard, Wishes},
+    };
+    use microphong_compare::{Comparison, Reference};
+    use microphong_models::{look::Surface, mesh::Submesh};
+    use microphong_render::shader::Shader;
 
     /// Many cases have transparent meshes, and some have holes.
     #[test]
@@ -70,5 +76,41 @@ mod tests {
             holes += u32::from(stream.textures().list.iter().any(|texture| texture.has_holes != 0));
         }
         assert!(transparent > 40 && holes > 4, "{transparent} {holes}");
+    }
+
+    /// A random scene in which triangles of six materials lie among one another, of which four are transparent, and the size of its picture.
+    fn sheets(random: &mut Random) -> Option<(StreamBytes, [u32; 2])> {
+        let wishes = Wishes { closed: false, unclipped: true, triangles: 120, hard: Hard::default() };
+        let width = random.between(20.0, 100.0);
+        let size = scenes::size(random, width);
+        let mut mesh = scenes::mesh(random, wishes);
+        let material = |random: &mut Random| Submesh { material: random.pick(0..6) as usize, ..Submesh::default() };
+        mesh.submeshes = mesh.triangles.iter().map(|_| material(random)).collect();
+        let mut look = scenes::look(random, &mesh, size, wishes);
+        let transparency = |random: &mut Random, material: i32| if material < 2 { 0.0 } else { random.between(0.05, 0.95) };
+        look.surfaces = (0..6).map(|k| Surface { transparency: transparency(random, k), ..scenes::surface(random, false) }).collect();
+        let parts = scenes::parts(random, &mesh, &look)?;
+        Some((look.stream(&parts).ok()?, size))
+    }
+
+    /// Pixels of methods that interpolate light show the sheets that the reference in floating point shows, in the same order. Rounding does not grow by
+    /// mixing.
+    #[test]
+    fn sheets_are_mixed_as_in_the_reference() {
+        let (mut scenes, mut pixels) = (0, 0);
+        for number in 0..400 {
+            let mut random = Random::new(6, number);
+            let Some((stream, [width, height])) = sheets(&mut random) else { continue };
+            let stream = stream.parse().unwrap();
+            let of = if random.once_in(3) { Reference::perspective_correct } else { Reference::new };
+            let Ok(reference) = of(stream, (width, height), 0) else { continue };
+            let shader = random.among(&[Shader::FLAT, Shader::GOURAUD, Shader::SIX_POINT]);
+            let Ok(Comparison { arithmetic, unmatched, pixels: compared, .. }) = reference.compare(shader) else { continue };
+            let limit = LIMIT + PER_LIGHT * stream.lights.len().saturating_sub(1) as f64;
+            assert!(unmatched == 0 && arithmetic.max <= limit, "case {number}, {}: {unmatched}, {arithmetic:?}", shader.name());
+            (scenes, pixels) = (scenes + 1, pixels + compared);
+        }
+        println!("{pixels} pixels of {scenes} scenes");
+        assert!(scenes > 300 && pixels > 100_000, "{scenes} {pixels}");
     }
 }
