@@ -128,8 +128,8 @@ pub fn choices(stream: Stream<'_>, size: Size, style: Style, number: u32) -> Res
 
 /// Levels of red, green and blue, where 255 is full, row by row from the top; `None` where nothing is drawn.
 ///
-/// Where the renderer walks one level for all channels, all three have the level of the brightest channel. A transparent surface mixes these levels with
-/// what is behind it.
+/// Where the renderer walks one level for all channels, all three have the level of the brightest channel. A transparent surface mixes these levels
+/// with what is behind it.
 ///
 /// # Errors
 /// When `size` is out of range, or the scene cannot be drawn in this style.

@@ -225,7 +225,8 @@ impl<'s> Reference<'s> {
         })
     }
 
-    /// The sight of a pixel whose Phong shading is closest to these levels, and the difference. Of triangles at equal depth the integers may show any.
+    /// The sight of a pixel whose Phong shading is closest to these levels, and the difference. Of triangles at equal depth the integers may show
+    /// any.
     fn best(&self, pixel: usize, level: Levels) -> Option<(&Sight, f64)> {
         let errors = self.drawn(pixel).map(|sight| (sight, error(level, self.light(pixel, sight, &self.phong))));
         errors.min_by(|a, b| a.1.abs().total_cmp(&b.1.abs()))

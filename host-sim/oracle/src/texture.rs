@@ -3,8 +3,8 @@
 //! At each point such a facet is shaded like one whose colour is everywhere that of the texel which is seen there. Light at nodes is not clamped, because
 //! the core multiplies it by texels only at the pixel.
 //!
-//! A texel can be a hole, where the facet covers nothing. The core rounds places in a texture, so that a pixel near the border of a texel may show another
-//! one. There a facet may cover a pixel at which the exact place is a hole. It then has the colour of a texel beside the hole.
+//! A texel can be a hole, where the facet covers nothing. The core rounds places in a texture, so that a pixel near the border of a texel may show
+//! another one. There a facet may cover a pixel at which the exact place is a hole. It then has the colour of a texel beside the hole.
 
 use super::{Facet, Frame, Levels, Shade, frame::mixed, visible::Certainty};
 use microphong::{
@@ -84,7 +84,8 @@ impl Facet {
         Certainty::of(exactly, is_covered.any(|other| other != exactly))
     }
 
-    /// This facet in each of the colours that the texel which is seen at a point of the screen may have, the exact one first; none if it has no texture.
+    /// This facet in each of the colours that the texel which is seen at a point of the screen may have, the exact one first; none if it has no
+    /// texture.
     #[must_use]
     pub fn within(&self, p: [f64; 2]) -> Vec<Self> {
         let Some(texture) = &self.texture else { return Vec::new() };

@@ -8,8 +8,8 @@ const SLACK: f64 = 2.0 / 65_536.0;
 /// Steps per pixel in which edges are compared. Corners on multiples of 1/16 are exact, and so is all that follows.
 const STEPS: f64 = 65_536.0;
 
-/// The facets that are seen in a pixel, in the order of drawing: at most one opaque one, and then those through which it is seen. If none of them is opaque,
-/// the background is seen.
+/// The facets that are seen in a pixel, in the order of drawing: at most one opaque one, and then those through which it is seen. If none of them is
+/// opaque, the background is seen.
 pub type Sight = Vec<u32>;
 
 /// Largest number of sights in front of one opaque facet. Six close decisions have as many, and all others are taken exactly.
@@ -84,8 +84,8 @@ impl Frame {
     }
 }
 
-/// What may be seen behind all transparent layers, what is exactly seen first: one of the opaque layers, or the background. Of equally near layers the first
-/// drawn comes first.
+/// What may be seen behind all transparent layers, what is exactly seen first: one of the opaque layers, or the background. Of equally near layers
+/// the first drawn comes first.
 fn grounds(mut opaque: Vec<Layer>) -> Vec<Option<Layer>> {
     opaque.sort_by(|a, b| b.inv_depth.total_cmp(&a.inv_depth));
     let certain = opaque.iter().find(|layer| layer.covers == Certainty::Always).map(|layer| layer.inv_depth);

@@ -62,8 +62,8 @@ impl Family for Arithmetic {
     }
 }
 
-/// Triangles side by side, of all of which something is seen, or a scene of any kind, two of three of them hard, by a method that can draw it. Half of all
-/// textures have holes. `None` if it would not make a valid stream.
+/// Triangles side by side, of all of which something is seen, or a scene of any kind, two of three of them hard, by a method that can draw it. Half
+/// of all textures have holes. `None` if it would not make a valid stream.
 pub fn case(random: &mut Random) -> Option<Case> {
     let hard = if random.once_in(3) { Hard::default() } else { Hard::random(random) };
     let case = if random.once_in(2) {
@@ -216,8 +216,8 @@ pub(crate) fn error(
     others.filter_map(|facet| Some(difference(frame, &facet, drawn, beside(&facet)?))).fold(error, f64::min)
 }
 
-/// Largest difference of a frame from its method in floating point, in 1/255, before the output format rounds; infinite where a pixel is
-/// missing. The frame is known already, and what may be seen at each of its pixels. `None` if the method cannot draw it, or if a surface is transparent.
+/// Largest difference of a frame from its method in floating point, in 1/255, before the output format rounds; infinite where a pixel is missing. The
+/// frame is known already, and what may be seen at each of its pixels. `None` if the method cannot draw it, or if a surface is transparent.
 #[must_use]
 pub fn of(case: &Case, frame: &Frame, visible: &[Vec<Sight>]) -> Option<f64> {
     Some(pixels(case, frame, visible)?.iter().map(Pixel::least).fold(0.0, f64::max))
@@ -245,8 +245,8 @@ fn is_gray(case: &Case) -> bool {
     case.format == Format::Gray8
 }
 
-/// The levels of a frame, pixel by pixel; none where nothing is drawn. Greys are those of pixels, which are rounded. They count as drawn unless they are
-/// those of the background, where it may be `visible`. `None` if the method cannot draw it.
+/// The levels of a frame, pixel by pixel; none where nothing is drawn. Greys are those of pixels, which are rounded. They count as drawn unless they
+/// are those of the background, where it may be `visible`. `None` if the method cannot draw it.
 fn levels(case: &Case, frame: &Frame, stream: Stream<'_>, visible: &[Vec<Sight>]) -> Option<Vec<Option<[f64; 3]>>> {
     if !is_gray(case) {
         return level::picture(stream, case.pixels(), case.style, case.frame).ok();
@@ -260,8 +260,8 @@ fn levels(case: &Case, frame: &Frame, stream: Stream<'_>, visible: &[Vec<Sight>]
     Some((0..).zip(&pixels).zip(visible).map(level).collect())
 }
 
-/// Compares all pixels of a frame with its method in floating point. `None` if the method cannot draw it, or if a surface is transparent: this judges one
-/// facet in a pixel.
+/// Compares all pixels of a frame with its method in floating point. `None` if the method cannot draw it, or if a surface is transparent: this judges
+/// one facet in a pixel.
 fn pixels(case: &Case, frame: &Frame, visible: &[Vec<Sight>]) -> Option<Vec<Pixel>> {
     if frame.facets.iter().any(|facet| facet.transparency > 0.0) {
         return None;

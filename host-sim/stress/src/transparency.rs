@@ -93,8 +93,8 @@ mod tests {
         Some((look.stream(&parts).ok()?, size))
     }
 
-    /// Pixels of methods that interpolate light show the sheets that the reference in floating point shows, in the same order. Rounding does not grow by
-    /// mixing.
+    /// Pixels of methods that interpolate light show the sheets that the reference in floating point shows, in the same order. Rounding does not grow
+    /// by mixing.
     #[test]
     fn sheets_are_mixed_as_in_the_reference() {
         let (mut scenes, mut pixels) = (0, 0);
