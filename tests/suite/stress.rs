@@ -92,7 +92,7 @@ const BROKEN: [(&str, &str, [u32; 2], u32, bool); 13] = [
 ];
 
 /// Random cases that once broke a promise: family, seed and number.
-const CASES: [(&str, u64, u64); 6] = [
+const CASES: [(&str, u64, u64); 7] = [
     // Under three lights, each run of a transparent row stepped the walks of all lights.
     ("changes", 20_261_128_602, 1_425),
     // Under skies alone a glossy material has one hue. The oracle judged it in three channels.
@@ -105,6 +105,8 @@ const CASES: [(&str, u64, u64); 6] = [
     ("changes", 992_400_004, 9_540),
     // Highlights that cannot be seen were too steep for loops unless they were left out.
     ("sameness", 992_400_003, 2_496),
+    // Highlights of more than 512 of 255 at a corner.
+    ("arithmetic", 99_001, 4_506),
 ];
 
 #[test]

@@ -1,15 +1,18 @@
 //! Textures.
 
 use crate::vertex_colours::{CORE, coloured, difference, lights, parts, picture};
+use embedded_graphics::prelude::Size;
 use microphong::{
     StreamError,
-    stream::record::{Colour, HAS_TEXTURE, Mesh, Texture, TextureCorners},
+    format::Gain,
+    stream::record::{Colour, HAS_TEXTURE, Material, Mesh, Texture, TextureCorners},
 };
 use microphong_sim::{
+    bench::{Bench, Processor, board_styles::Program},
     board::{Board, build},
     bytes::StreamBytes,
-    render::Format,
-    scene,
+    render::{self, Format, Settings},
+    scene::{self, Scene},
     shader::Shader,
     stress::records::Records,
     verify::{self, Request},
@@ -64,6 +67,42 @@ fn a_board_draws_the_same_bits() {
                 verify::checksums(&request, &elf).unwrap();
             }
         }
+    }
+}
+
+/// Instructions that a pixel on a Cortex-M3 may take more with a texture than without, its share of set-up and rows included: without highlights, and with
+/// them.
+const LIMITS: [(Shader, [f64; 2]); 4] =
+    [(Shader::FLAT, [50.0, 55.0]), (Shader::GOURAUD, [46.0, 52.0]), (Shader::PHONG, [83.0, 87.0]), (Shader::AUTO, [81.0, 84.0])];
+
+#[test]
+fn costs_of_textures_keep_to_their_limits() {
+    let processor = Processor::CortexM3;
+    let [plain, with] = [Program::Plain, Program::TEXTURES].map(|program| Bench::of_program(&[processor], program).unwrap());
+    let wanted = LIMITS.map(|(shader, _)| (processor, shader));
+    let scene = scene::load("sphere-374").unwrap();
+    let colours: Vec<_> = (0..=40).map(|k| [6 * k, 255 - 5 * k, 37 * (k % 7)]).collect();
+    let found = [0.0, 0.3].map(|specular| {
+        let gain = |gain: f64| [Gain::from_num(gain); 3];
+        let material = Material::new(gain(0.18), gain(0.7), gain(specular), 30);
+        let white = || Records { materials: vec![material], ..parts("sphere-374") };
+        let of = |stream| Scene { stream, ..scene.clone() };
+        let scenes = [of(white().written().unwrap()), of(textured(white(), [6, 6], &colours, |vertex| [vertex << 7, vertex << 6 & 0xFFF]))];
+        let size = Size::new(scene.size.0, scene.size.1);
+        let settings = Settings { size, style: Shader::GOURAUD.into(), band_rows: scene.size.1, format: Format::Rgb565 };
+        let pixels = f64::from(render::picture(scenes[0].stream.parse().unwrap(), &settings, 0).unwrap().stats.pixels);
+        let count = |bench: &Bench, scene: &Scene| -> Vec<f64> {
+            bench.count(scene, &wanted, &|| ()).unwrap().iter().map(|found| found.instructions as f64 / pixels).collect()
+        };
+        [count(&plain, &scenes[0]), count(&with, &scenes[1])]
+    });
+    println!("instructions a pixel: matt without a texture, more with one; glossy likewise");
+    for (k, (shader, most)) in LIMITS.into_iter().enumerate() {
+        let [[matt, textured], [glossy, both]] = found.each_ref().map(|counts| counts.each_ref().map(|counts| counts[k]));
+        let more = [textured - matt, both - glossy];
+        let line = format!("{:8} {matt:6.1} {:6.1} {glossy:6.1} {:6.1}", shader.name(), more[0], more[1]);
+        println!("{line}");
+        assert!(more[0] <= most[0] && more[1] <= most[1], "{line}");
     }
 }
 

@@ -38,6 +38,8 @@ pub struct Parts {
 
 /// Bits of a share.
 pub(crate) const SHARE: u32 = 16;
+/// Place of the number of fraction bits that highlights of a vertex lack.
+const SPECULAR: u32 = 8;
 /// Largest level of a part.
 const MOST: i32 = (1 << (LEVEL + 9)) - 1;
 
@@ -132,10 +134,10 @@ impl Albedo {
     /// The levels of a vertex that holds [`Parts`], at a corner of this colour.
     #[inline(always)]
     pub(crate) fn lit_vertex(self, [r, g, b, spare]: [i32; 4]) -> [i32; 3] {
-        // In words, and so without an array of each part.
+        // In words, and so without an array of each part. What is wanted of the fourth number stands in its lower bits.
         let lit = |parts: i32, share: u16| {
-            let (diffuse, specular) = (parts as u32 & MOST as u32, parts as u32 >> SHARE);
-            let bits = (SHARE - spare as u32) & 31;
+            let (diffuse, specular) = (parts as u32 & MOST as u32, parts as u32 >> SHARE << (spare as u32 >> SPECULAR & 31));
+            let bits = SHARE.wrapping_sub(spare as u32) & 31;
             (((diffuse * u32::from(share) + (1 << (SHARE - 1))) >> bits) + specular).min(FULL as u32) as i32
         };
         let [red, green, blue] = self.channels();
@@ -154,19 +156,22 @@ impl Albedo {
 impl Parts {
     /// The parts that [`Self::packed`] has packed. Those of more than 512 have lost fraction bits.
     pub(crate) fn unpacked([r, g, b, spare]: [i32; 4]) -> Self {
-        let packed = [r, g, b];
-        Self { diffuse: map(packed, |parts| (parts & MOST) << (spare & 31)), specular: map(packed, |parts| (parts as u32 >> SHARE) as i32) }
+        let (packed, more) = ([r, g, b], spare >> SPECULAR);
+        Self {
+            diffuse: map(packed, |parts| (parts & MOST) << (spare & 31)),
+            specular: map(packed, |parts| ((parts as u32 >> SHARE) << (more & 31)) as i32),
+        }
     }
 
-    /// The parts as a vertex holds them. Where ambient and diffuse light exceed 512, which a dark colour can make visible, their levels have fewer
-    /// fraction bits: the fourth number says how many.
+    /// The parts as a vertex holds them. Where light exceeds 512, which a dark colour or a corner without light can make visible, its levels have fewer
+    /// fraction bits: the fourth number says how many, for ambient and diffuse light in its lower bits and for highlights from [`SPECULAR`] on.
     #[inline]
     pub(crate) fn packed(self) -> [i32; 4] {
-        let [r, g, b] = self.diffuse;
-        let spare = ((r | g | b) as u32 >> SHARE).checked_ilog2().map_or(0, |bits| bits as i32 + 1);
-        let pack = |diffuse: i32, specular: i32| diffuse >> (spare & 31) | specular.min(MOST) << SHARE;
+        let spare = |[r, g, b]: [i32; 3]| ((r | g | b) as u32 >> SHARE).checked_ilog2().map_or(0, |bits| bits as i32 + 1);
+        let (spare, more) = (spare(self.diffuse), spare(self.specular));
+        let pack = |diffuse: i32, specular: i32| diffuse >> (spare & 31) | specular >> (more & 31) << SHARE;
         let [x, y, z] = zip(self.diffuse, self.specular, pack);
-        [x, y, z, spare]
+        [x, y, z, spare | more << SPECULAR]
     }
 }
 
@@ -189,6 +194,20 @@ mod tests {
                 let exact = f64::from(levels[k]) * f64::from(channels[k]) / 255.0 + f64::from(specular[k]);
                 prop_assert!((f64::from(lit[k]) - exact.min(f64::from(FULL))).abs() <= 1.0);
             }
+        }
+
+        /// Of the largest level, 16 bits are kept.
+        #[test]
+        fn bright_light_keeps_its_largest_bits(diffuse in prop::array::uniform3(0..=8 * FULL), specular in prop::array::uniform3(0..=16 * FULL)) {
+            let parts = Parts { diffuse, specular };
+            let unpacked = Parts::unpacked(parts.packed());
+            for (levels, kept) in [(diffuse, unpacked.diffuse), (specular, unpacked.specular)] {
+                let lost = levels.iter().fold(0, |most, &level| most.max(level)) >> SHARE;
+                prop_assert!(zip(levels, kept, |level, kept| (0..=2 * lost).contains(&(level - kept))) == [true; 3], "{levels:?} {kept:?}");
+            }
+            let lit = Albedo::new(WHITE, false).lit_vertex(parts.packed());
+            let exact = Albedo::new(WHITE, false).lit(parts);
+            prop_assert!(zip(lit, exact, |lit, exact| (exact - lit).abs() <= 32) == [true; 3], "{lit:?} {exact:?}");
         }
     }
 

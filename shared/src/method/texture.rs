@@ -123,7 +123,6 @@ impl TriangleSetup<'_> {
         plane.shifted(sampler.alignment(TEXTURE + MORE))
     }
 
-
     /// Draws the triangle, whose light is `field`, by `shader` with the texture. Returns the number of pixels drawn; `None` if it has no texture.
     pub(crate) fn draw_textured<F: Field, S>(&self, field: &F, shader: S, canvas: &mut dyn Canvas) -> Option<u32>
     where
@@ -219,12 +218,7 @@ impl IntensityShader<(([u32; 3], [u32; 3]), [u32; 2])> for OnTexture<'_, Apart> 
 /// loop has to draw it: in greys, under more than full intensity, and where a plane on the screen is too far off for the light, or a quadratic for the
 /// place.
 #[inline(never)]
-pub(crate) fn fill<C: Pixel>(
-    setup: &TriangleSetup<'_>,
-    shading: &Shading<'_>,
-    parts: &[Parts; 3],
-    band: &mut Band<'_, C>,
-) -> Option<u32> {
+pub(crate) fn fill<C: Pixel>(setup: &TriangleSetup<'_>, shading: &Shading<'_>, parts: &[Parts; 3], band: &mut Band<'_, C>) -> Option<u32> {
     let texture = setup.texture.first()?.as_ref()?;
     if C::GRAY {
         return None;
