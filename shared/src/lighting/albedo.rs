@@ -196,7 +196,7 @@ mod tests {
             }
         }
 
-        /// Of the largest level, 16 bits are kept.
+        /// Vertices keep 16 bits of the largest level.
         #[test]
         fn bright_light_keeps_its_largest_bits(diffuse in prop::array::uniform3(0..=8 * FULL), specular in prop::array::uniform3(0..=16 * FULL)) {
             let parts = Parts { diffuse, specular };
