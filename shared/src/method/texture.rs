@@ -420,7 +420,7 @@ impl<C: Pixel> PixelShader<([u32; 2], Aligned)> for NeutralTexels<'_, C> {
 /// The place in a texture, by a polynomial. Where the texture has a hole, the surface covers no pixel.
 #[derive(Clone, Copy, Debug)]
 pub struct Placed<'f, P, const ALIGNED: bool = false> {
-    /// The place, which is [`Aligned`] or becomes it at each pixel.
+    /// The place, whose bits already stand where the sampler cuts the number of a texel from them, or are moved there at each pixel.
     pub place: P,
     /// The texture.
     pub sampler: &'f Sampler<'f>,
