@@ -230,8 +230,8 @@ pub(crate) fn fill<C: Pixel>(setup: &TriangleSetup<'_>, shading: &Shading<'_>, p
     let light = map(parts.each_ref(), |parts| map(part(parts.diffuse, QUARTER), scaled));
     let highlights = map(parts.each_ref(), |parts| parts.specular);
     let range = || largest_range(light).saturating_mul(1 << QUARTER).max(largest_range(highlights));
-    let [red, green, blue] = [0, 1, 2].map(|k| is_bright(map(light, |light| light[k]), map(highlights, |level| level[k])));
-    if red || green || blue || !matches!(setup.linear_way(range), LinearWay::Plane) {
+    let are_bright = zip(channels(light), channels(highlights), is_bright) != [false; 3];
+    if are_bright || !matches!(setup.linear_way(range), LinearWay::Plane) {
         return None;
     }
     let fit = |levels| Nodes::<3, 3, RANGE>::new(channels(levels), CHANNEL - LEVEL).fit(setup.gradients);
