@@ -136,10 +136,14 @@ pub(crate) fn meshes<'r>(scene: &'r Scene<'_>, placements: Placements<'r>) -> im
         let placed = move |mesh| Some(PlacedMesh::new(placement, object, first?, mesh));
         placement.meshes(scene, object).filter_map(placed)
     };
-    let transparent = move |is_wanted: bool| move |placed: &PlacedMesh<'r>| !TRANSPARENCY || placed.mesh.is_transparent() == is_wanted;
-    let opaque = placements.objects(scene).flat_map(of_object).filter(transparent(false));
-    let behind = if TRANSPARENCY { Some(placements.objects(scene).rev().flat_map(of_object).filter(transparent(true))) } else { None };
-    opaque.chain(behind.into_iter().flatten())
+    let all = placements.objects(scene).flat_map(of_object);
+    // Not decided by a constant: adapters that do nothing are 2.4 KB of code.
+    #[cfg(feature = "transparency")]
+    let all = {
+        let behind = placements.objects(scene).rev().flat_map(of_object).filter(|placed| placed.mesh.is_transparent());
+        all.filter(|placed| !placed.mesh.is_transparent()).chain(behind)
+    };
+    all
 }
 
 impl<'r> Context<'r> {
