@@ -74,6 +74,12 @@ fn a_board_draws_the_same_bits() {
     }
 }
 
+/// A white material with this much of highlights.
+pub fn white(specular: f64) -> Material {
+    let gain = |gain: f64| [Gain::from_num(gain); 3];
+    Material::new(gain(0.18), gain(0.7), gain(specular), 30)
+}
+
 /// How far a figure of the guide may be from what is counted, in instructions a pixel.
 const SLACK: f64 = 1.0;
 
@@ -86,9 +92,7 @@ fn costs_of_textures_are_those_of_the_guide() {
     let scene = scene::load("sphere-374").unwrap();
     let colours: Vec<_> = (0..=40).map(|k| [6 * k, 255 - 5 * k, 37 * (k % 7)]).collect();
     let found = [0.0, 0.3].map(|specular| {
-        let gain = |gain: f64| [Gain::from_num(gain); 3];
-        let material = Material::new(gain(0.18), gain(0.7), gain(specular), 30);
-        let white = || Records { materials: vec![material], ..parts("sphere-374") };
+        let white = || Records { materials: vec![white(specular)], ..parts("sphere-374") };
         let of = |stream| Scene { stream, ..scene.clone() };
         let scenes = [of(white().written().unwrap()), of(textured(white(), [6, 6], &colours, |vertex| [vertex << 7, vertex << 6 & 0xFFF]))];
         let size = Size::new(scene.size.0, scene.size.1);

@@ -96,9 +96,9 @@ pub trait Walker: Clone {
         Self::HAS_HOLES
     }
 
-    /// Whether the surface covers the current pixel: false if it has a hole there.
+    /// Whether the surface covers a pixel that has this value: false if it has a hole there.
     #[inline(always)]
-    fn covers(&self) -> bool {
+    fn covers(_: &Self::Value) -> bool {
         true
     }
 }
@@ -193,8 +193,8 @@ impl<A: Walker, B: Walker> Walker for (A, B) {
     }
 
     #[inline(always)]
-    fn covers(&self) -> bool {
-        self.0.covers() && self.1.covers()
+    fn covers((a, b): &Self::Value) -> bool {
+        A::covers(a) && B::covers(b)
     }
 }
 

@@ -12,6 +12,7 @@ use crate::{
         ramps::Ramps,
         steps,
     },
+    stream::record::Colour,
 };
 use zerocopy::{FromBytes, Immutable, IntoBytes, KnownLayout};
 
@@ -33,6 +34,31 @@ pub struct Coloured<L>(pub L, pub [u32; 3]);
 
 /// Fraction bits of a walked colour.
 pub const COLOUR: u32 = 29;
+
+/// The colour of a surface at a pixel.
+pub(crate) trait SurfaceColour {
+    /// Its shares of red, green and blue, Q1.[`COLOUR`].
+    fn shares(self) -> [u32; 3];
+}
+
+/// Walked shares.
+impl SurfaceColour for [u32; 3] {
+    #[inline(always)]
+    fn shares(self) -> [u32; 3] {
+        self
+    }
+}
+
+/// The colour of a texel.
+impl SurfaceColour for Colour {
+    #[inline(always)]
+    fn shares(self) -> [u32; 3] {
+        let Self { channels: [r, g, b], .. } = self;
+        // From 255 to 65,535 of 65,536.
+        let share = |channel: u8| u32::from(channel) * (257 << (COLOUR - SHARE));
+        [share(r), share(g), share(b)]
+    }
+}
 
 /// Multiplies a level by a walked share. Both levels have one format, in which they are not negative.
 #[inline(always)]

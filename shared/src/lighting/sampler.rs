@@ -2,7 +2,7 @@
 
 use crate::{
     arch::product::{HALVES, unsigned_product},
-    features::{TEXTURED, TRANSPARENCY},
+    features::TEXTURED,
     format::{COSINE, TEXTURE},
     lighting::albedo::Albedo,
     stream::{
@@ -92,16 +92,10 @@ impl<'f> Sampler<'f> {
         *colour.unwrap_or(&Colour::new([0; 3]))
     }
 
-    /// Whether the texture has no hole at a place.
-    #[inline(always)]
-    pub(crate) fn covers(&self, place: Aligned) -> bool {
-        !TRANSPARENCY || self.texel(place).hole == 0
-    }
-
-    /// The colour at a place, as that of a surface.
+    /// The colour of a texel, as that of a surface.
     #[inline]
-    pub(crate) fn at(&self, place: Aligned) -> Albedo {
-        Albedo::new(self.texel(place), self.is_gray)
+    pub(crate) fn albedo(&self, texel: Colour) -> Albedo {
+        Albedo::new(texel, self.is_gray)
     }
 
     /// The largest difference between corners at these places, in texels, Q12.3.
@@ -126,8 +120,9 @@ mod tests {
         let palette = core::array::from_fn(|k| Colour::new([k as u8; 3]));
         let at = |u: f64, v: f64| {
             let place = [u, v].map(|c| (c * f64::from(1u32 << WALKED)) as i64 as u32);
-            let [share, ..] = texture(&palette).at(texture(&palette).aligned(place)).shares();
-            share / 257
+            let texture = texture(&palette);
+            let Colour { channels: [red, ..], .. } = texture.texel(texture.aligned(place));
+            red
         };
         assert_eq!([at(0.0, 0.0), at(0.6, 0.0), at(0.0, 0.3), at(0.99, 0.99)], [0, 1, 2, 7]);
         assert_eq!([at(3.6, 15.0), at(-0.1, -0.1), at(1.0, 2.5)], [1, 7, 4]);

@@ -93,7 +93,7 @@ impl<W: Patch<Walker: Walker<Value = [u32; 2]>>> Coloured<'_, W> {
                     walker.step();
                     bit >>= 1;
                     if visible & bit != 0 {
-                        reflect(sums, highlights, map(sampler.at(walker.value()).shares(), i64::from));
+                        reflect(sums, highlights, map(sampler.albedo(walker.value()).shares(), i64::from));
                     }
                 }
             }

@@ -21,12 +21,11 @@ use crate::{
     },
     lighting::{
         albedo::{Albedo, Parts, SHARE},
-        constant_lights::COLOUR,
-        sampler::{Aligned, FINER, IfTextured, Sampler, Textured},
+        sampler::{FINER, IfTextured, Sampler, Textured},
     },
     math::vector::{map, zip},
     method::{
-        EXTRA, IntensityShader, LinearWay, Middles, RANGE, Shading, TriangleSetup, bias, channels, largest, largest_range,
+        EXTRA, IntensityShader, LinearWay, Middles, RANGE, Shading, TriangleSetup, bias, channels, largest,
         node::mixed,
         perspective,
         products::{LinearNodes, QuadraticNodes, fitted, linear, quadratic},
@@ -108,11 +107,11 @@ impl TriangleSetup<'_> {
         perspective::linear_way(self.corners.map(|corner| corner.depth), sampler.range(places), MOST)
     }
 
-    /// The colours of the texture over the triangle; `None` if it has none, or a quadratic is too far off for the place.
+    /// The texels over the triangle; `None` if it has no texture, or a quadratic is too far off for the place.
     #[inline(never)]
-    pub(crate) fn sampled(&self) -> Option<Sampled<Placed<'_, ByColumn<Quadric<2>>>>> {
+    pub(crate) fn texels(&self) -> Option<Placed<'_, ByColumn<Quadric<2>>>> {
         let texture = self.texture.first()?.as_ref()?;
-        Some(Sampled(Placed { place: ByColumn(by_quadratic(self, texture, self.way_of_places(texture))?), sampler: texture.sampler }))
+        Some(Placed { place: ByColumn(by_quadratic(self, texture, self.way_of_places(texture))?), sampler: texture.sampler })
     }
 
     /// The place in a texture as a plane on the screen.
@@ -126,7 +125,7 @@ impl TriangleSetup<'_> {
     /// Draws the triangle, whose light is `field`, by `shader` with the texture. Returns the number of pixels drawn; `None` if it has no texture.
     pub(crate) fn draw_textured<F: Field, S>(&self, field: &F, shader: S, canvas: &mut dyn Canvas) -> Option<u32>
     where
-        for<'s> OnTexture<'s, S>: IntensityShader<(F::Value, [u32; 2])>,
+        for<'s> OnTexture<'s, S>: IntensityShader<(F::Value, Colour)>,
     {
         let place = self.texture_patch().first().copied()??;
         let shader = OnTexture { sampler: place.sampler, shader };
@@ -200,16 +199,16 @@ impl Albedo {
 }
 
 /// All light is coloured: methods that do not tell highlights apart show them in the colour of the surface.
-impl<V, S: IntensityShader<V>> IntensityShader<(V, [u32; 2])> for OnTexture<'_, S> {
-    fn shade(&self, (value, place): (V, [u32; 2])) -> Intensity {
+impl<V, S: IntensityShader<V>> IntensityShader<(V, Colour)> for OnTexture<'_, S> {
+    fn shade(&self, (value, texel): (V, Colour)) -> Intensity {
         // No more than full intensity, as without a texture.
-        self.sampler.at(place).reflected(map(self.shader.shade(value), |light| light.min(FULL << (INTENSITY - LEVEL))))
+        self.sampler.albedo(texel).reflected(map(self.shader.shade(value), |light| light.min(FULL << (INTENSITY - LEVEL))))
     }
 }
 
-impl IntensityShader<(([u32; 3], [u32; 3]), [u32; 2])> for OnTexture<'_, Apart> {
-    fn shade(&self, ((light, highlights), place): (([u32; 3], [u32; 3]), [u32; 2])) -> Intensity {
-        let reflected = self.sampler.at(place).reflected(map(light, whole));
+impl IntensityShader<(([u32; 3], [u32; 3]), Colour)> for OnTexture<'_, Apart> {
+    fn shade(&self, ((light, highlights), texel): (([u32; 3], [u32; 3]), Colour)) -> Intensity {
+        let reflected = self.sampler.albedo(texel).reflected(map(light, whole));
         zip(reflected, map(highlights, whole), |reflected, highlight| (reflected + highlight).clamp(0, i32::from(u16::MAX)))
     }
 }
@@ -223,55 +222,56 @@ pub(crate) fn fill<C: Pixel>(setup: &TriangleSetup<'_>, shading: &Shading<'_>, p
     if C::GRAY {
         return None;
     }
-    let way = setup.way_of_places(texture);
+    let quarter = shading.reflectance.quarter();
+    let [light, highlights] = [|parts: &Parts| parts.diffuse, |parts: &Parts| parts.specular].map(|levels| map(parts.each_ref(), levels));
+    // Light without a hue is one level at a pixel.
     if shading.reflectance.is_neutral() && NeutralTexels::<C>::EXISTS {
-        return fill_neutral(setup, shading, (texture, way), parts, band);
+        let green = |[_, green, _]: [i32; 3]| green;
+        return draw(setup, texture, [map(light, green)], [map(highlights, green)], NeutralTexels::<C>::new(quarter), band);
     }
-    let light = map(parts.each_ref(), |parts| map(part(parts.diffuse, QUARTER), scaled));
-    let highlights = map(parts.each_ref(), |parts| parts.specular);
-    let range = || largest_range(light).saturating_mul(1 << QUARTER).max(largest_range(highlights));
-    let are_bright = zip(channels(light), channels(highlights), is_bright) != [false; 3];
-    if are_bright || !matches!(setup.linear_way(range), LinearWay::Plane) {
-        return None;
-    }
-    let fit = |levels| Nodes::<3, 3, RANGE>::new(channels(levels), CHANNEL - LEVEL).fit(setup.gradients);
-    let place = Placed::<_, false> { place: ByColumn(by_quadratic(setup, texture, way)?), sampler: texture.sampler };
-    let pixels = Texels::<C>::new(texture.sampler, shading.reflectance.quarter());
-    Some(if highlights == [[0; 3]; 3] {
-        setup.fill(|| (fit(light), place), pixels, band)
-    } else {
-        setup.fill(|| ((fit(light), fit(highlights)), place), pixels, band)
-    })
+    draw(setup, texture, channels(light), channels(highlights), Texels::<C>::new(quarter), band)
 }
 
-/// [`fill`] under light without a hue: one level of light, and one of highlights, is interpolated instead of three.
+/// [`fill`] by the levels of each channel at the corners.
 #[inline(never)]
-fn fill_neutral<C: Pixel>(
+fn draw<C: Pixel, S, const CH: usize>(
     setup: &TriangleSetup<'_>,
-    shading: &Shading<'_>,
-    (texture, way): (&Textured<'_>, LinearWay),
-    parts: &[Parts; 3],
+    texture: &Textured<'_>,
+    light: [[i32; 3]; CH],
+    highlights: [[i32; 3]; CH],
+    pixels: S,
     band: &mut Band<'_, C>,
-) -> Option<u32> {
-    let light = map(parts.each_ref(), |Parts { diffuse: [_, green, _], .. }| scaled(share_of(*green, QUARTER)));
-    let highlights = map(parts.each_ref(), |Parts { specular: [_, green, _], .. }| *green);
-    let spread = |[a, b, c]: [i32; 3]| (a.max(b).max(c) - a.min(b).min(c)) as u32;
-    let range = || spread(light).saturating_mul(1 << QUARTER).max(spread(highlights));
-    if is_bright(light, highlights) || !matches!(setup.linear_way(range), LinearWay::Plane) {
+) -> Option<u32>
+where
+    S: PixelShader<(Colour, [u32; CH]), Pixel = C> + PixelShader<(Colour, ([u32; CH], [u32; CH])), Pixel = C>,
+{
+    let light = light.map(|levels| map(levels, |level| scaled(share_of(level, QUARTER))));
+    let spread = |levels: &[[i32; 3]; CH]| levels.iter().fold(0, |most, &[a, b, c]| most.max((a.max(b).max(c) - a.min(b).min(c)) as u32));
+    let range = || spread(&light).saturating_mul(1 << QUARTER).max(spread(&highlights));
+    let brightest = |levels: &[[i32; 3]; CH]| levels.iter().fold(0, |most, levels| most.max(largest(levels)));
+    let (brightest, highlight) = (brightest(&light), brightest(&highlights));
+    let is_matt = highlight == 0;
+    // The sum at a pixel has to be less than 512 of 255.
+    let most = if is_matt { 510 } else { 257 } << LEVEL >> QUARTER;
+    if brightest >= most || highlight > FULL || !matches!(setup.linear_way(range), LinearWay::Plane) {
         return None;
     }
-    let gradients = setup.gradients;
-    let matt = || Nodes::<3, 1, RANGE>::new([light], CHANNEL - LEVEL).fit(gradients);
-    let shiny = || Nodes::<3, 2, RANGE>::new([light, highlights], CHANNEL - LEVEL).fit(gradients);
+    let fit = |levels| Nodes::<3, CH, RANGE>::new(levels, CHANNEL - LEVEL).fit(setup.gradients);
     let sampler = texture.sampler;
-    let plane = || Placed::<_, true> { place: setup.place_by_plane(texture), sampler };
-    let pixels = NeutralTexels::<C>::new(sampler, shading.reflectance.quarter());
-    Some(match (way, largest(&highlights) == 0) {
-        (LinearWay::Plane, true) => setup.fill(|| (matt(), plane()), pixels, band),
-        (LinearWay::Plane, false) => setup.fill(|| (shiny(), plane()), pixels, band),
-        (_, is_matt) => {
-            let place = Placed::<_, false> { place: ByColumn(by_quadratic(setup, texture, way)?), sampler };
-            if is_matt { setup.fill(|| (matt(), place), pixels, band) } else { setup.fill(|| (shiny(), place), pixels, band) }
+    let way = setup.way_of_places(texture);
+    Some(if matches!(way, LinearWay::Plane) {
+        let place = || Placed::<_, true> { place: setup.place_by_plane(texture), sampler };
+        if is_matt {
+            setup.fill(|| (place(), fit(light)), pixels, band)
+        } else {
+            setup.fill(|| (place(), (fit(light), fit(highlights))), pixels, band)
+        }
+    } else {
+        let place = Placed::<_, false> { place: ByColumn(by_quadratic(setup, texture, way)?), sampler };
+        if is_matt {
+            setup.fill(|| (place, fit(light)), pixels, band)
+        } else {
+            setup.fill(|| (place, (fit(light), fit(highlights))), pixels, band)
         }
     })
 }
@@ -286,40 +286,29 @@ fn by_quadratic(setup: &TriangleSetup<'_>, texture: &Textured<'_>, way: LinearWa
     Some(fitted(&place_nodes(texture, shares), setup.gradients))
 }
 
-/// Whether quarters of light and levels of highlights may be too bright for loops: the sum at a pixel has to be less than 512.
-#[inline(never)]
-fn is_bright(light: [i32; 3], highlights: [i32; 3]) -> bool {
-    let brightest = largest(&highlights);
-    let most = if brightest == 0 { 510 } else { 257 } << LEVEL >> QUARTER;
-    largest(&light) >= most || brightest > FULL
-}
-
 /// A level that is multiplied by a channel of 0 to 255 and divided by 256.
 fn scaled(level: i32) -> i32 {
     level + ((level + 128) >> 8)
 }
 
-/// Makes pixels of interpolated light and of the texels of a place.
+/// Makes pixels of interpolated light and of texels.
 #[derive(Clone, Copy)]
-struct Texels<'f, C> {
-    sampler: &'f Sampler<'f>,
+struct Texels<C> {
     /// What is added to a level before it is rounded down.
     rounding: ByTurns<[i32; 3], C>,
 }
 
-impl<'f, C: Pixel> Texels<'f, C> {
+impl<C: Pixel> Texels<C> {
     /// Dithers by rows, see [`Rgb`](crate::raster::pixel_shader::Rgb).
-    fn new(sampler: &'f Sampler<'f>, quarter: i32) -> Self {
+    fn new(quarter: i32) -> Self {
         let rounding = |quarter| zip(steps(C::DEPTH, quarter), C::LEVELS, |step, depth| half_step(depth) + step);
         let [even, odd] = if C::Ramps::CHECKERED { [-quarter, quarter] } else { [0; 2] };
-        Self { sampler, rounding: ByTurns::new([rounding(even), rounding(odd)]) }
+        Self { rounding: ByTurns::new([rounding(even), rounding(odd)]) }
     }
 
-    /// The levels that [`scaled`] quarters of light leave at a place.
+    /// The levels that [`scaled`] quarters of light leave on a texel.
     #[inline(always)]
-    fn reflected(&self, quarters: [u32; 3], place: [u32; 2]) -> [i32; 3] {
-        let Colour { channels: [red, green, blue], .. } = self.sampler.texel(place);
-        let [r, g, b] = quarters;
+    fn reflected([r, g, b]: [u32; 3], Colour { channels: [red, green, blue], .. }: Colour) -> [i32; 3] {
         // Q8.16 times eight bits, of which a quarter is a whole level with CHANNEL fraction bits. It is less than 512.
         let reflect = |quarter: u32, channel: u8| (quarter >> (CHANNEL - 16)).wrapping_mul(channel.into()) as i32;
         [reflect(r, red), reflect(g, green), reflect(b, blue)]
@@ -331,46 +320,44 @@ impl<'f, C: Pixel> Texels<'f, C> {
     }
 }
 
-impl<C: Pixel> ByRows for Texels<'_, C> {
+impl<C: Pixel> ByRows for Texels<C> {
     #[inline(always)]
     fn step_row(&mut self) {
         self.rounding.step_row();
     }
 }
 
-impl<C: Pixel> PixelShader<([u32; 3], [u32; 2])> for Texels<'_, C> {
+impl<C: Pixel> PixelShader<(Colour, [u32; 3])> for Texels<C> {
     type Pixel = C;
 
     #[inline(always)]
-    fn shade(&self, (light, place): ([u32; 3], [u32; 2])) -> C {
-        self.colour(self.reflected(light, place))
+    fn shade(&self, (texel, light): (Colour, [u32; 3])) -> C {
+        self.colour(Self::reflected(light, texel))
     }
 }
 
-impl<C: Pixel> PixelShader<(([u32; 3], [u32; 3]), [u32; 2])> for Texels<'_, C> {
+impl<C: Pixel> PixelShader<(Colour, ([u32; 3], [u32; 3]))> for Texels<C> {
     type Pixel = C;
 
     #[inline(always)]
-    fn shade(&self, ((light, highlights), place): (([u32; 3], [u32; 3]), [u32; 2])) -> C {
-        self.colour(zip(self.reflected(light, place), highlights, |level, highlight| level.wrapping_add(highlight as i32)))
+    fn shade(&self, (texel, (light, highlights)): (Colour, ([u32; 3], [u32; 3]))) -> C {
+        self.colour(zip(Self::reflected(light, texel), highlights, |level, highlight| level.wrapping_add(highlight as i32)))
     }
 }
 
 /// [`Texels`] under light without a hue, of which one level is walked: that of green.
 #[derive(Clone, Copy)]
-struct NeutralTexels<'f, C> {
-    sampler: &'f Sampler<'f>,
+struct NeutralTexels<C> {
     /// What is added to levels of red and blue, and of green, before they are rounded down.
     rounding: ByTurns<(i32, i32), C>,
 }
 
-impl<'f, C: Pixel> NeutralTexels<'f, C> {
+impl<C: Pixel> NeutralTexels<C> {
     /// Whether the format has as many bits of red as of blue, and as many of green or one more.
     const EXISTS: bool = matches!(C::LEVELS, [red, green, blue] if red == blue && (green == red || green == 6 && red == 5));
 
-    fn new(sampler: &'f Sampler<'f>, quarter: i32) -> Self {
-        let rounding = Texels::<C>::new(sampler, quarter).rounding.map(|[red, green, _]| (red, green));
-        Self { sampler, rounding }
+    fn new(quarter: i32) -> Self {
+        Self { rounding: Texels::<C>::new(quarter).rounding.map(|[red, green, _]| (red, green)) }
     }
 
     /// A level of red and blue by that of green. They are as 248 to 252 if green has 6 bits and they have 5: this is off by 2^-12.
@@ -380,10 +367,9 @@ impl<'f, C: Pixel> NeutralTexels<'f, C> {
         if red == green { level } else { level.wrapping_sub(level >> 6) }
     }
 
-    /// The colour where the texture reflects this much light, as [`scaled`] quarters, and where these levels of highlights are added.
+    /// The colour where a texel reflects this much light, as [`scaled`] quarters, and where these levels of highlights are added.
     #[inline(always)]
-    fn colour(&self, quarter: u32, highlight: u32, place: Aligned) -> C {
-        let Colour { channels: [red, green, blue], .. } = self.sampler.texel(place);
+    fn colour(&self, quarter: u32, highlight: u32, Colour { channels: [red, green, blue], .. }: Colour) -> C {
         let (more, more_green) = self.rounding.now();
         let quarter = quarter >> (CHANNEL - 16);
         let level = |channel: u8, quarter: u32, more: i32| (quarter.wrapping_mul(channel.into()) as i32).wrapping_add(more);
@@ -392,28 +378,28 @@ impl<'f, C: Pixel> NeutralTexels<'f, C> {
     }
 }
 
-impl<C: Pixel> ByRows for NeutralTexels<'_, C> {
+impl<C: Pixel> ByRows for NeutralTexels<C> {
     #[inline(always)]
     fn step_row(&mut self) {
         self.rounding.step_row();
     }
 }
 
-impl<C: Pixel> PixelShader<([u32; 1], Aligned)> for NeutralTexels<'_, C> {
+impl<C: Pixel> PixelShader<(Colour, [u32; 1])> for NeutralTexels<C> {
     type Pixel = C;
 
     #[inline(always)]
-    fn shade(&self, ([light], place): ([u32; 1], Aligned)) -> C {
-        self.colour(light, 0, place)
+    fn shade(&self, (texel, [light]): (Colour, [u32; 1])) -> C {
+        self.colour(light, 0, texel)
     }
 }
 
-impl<C: Pixel> PixelShader<([u32; 2], Aligned)> for NeutralTexels<'_, C> {
+impl<C: Pixel> PixelShader<(Colour, ([u32; 1], [u32; 1]))> for NeutralTexels<C> {
     type Pixel = C;
 
     #[inline(always)]
-    fn shade(&self, ([light, highlight], place): ([u32; 2], Aligned)) -> C {
-        self.colour(light, highlight, place)
+    fn shade(&self, (texel, ([light], [highlight])): (Colour, ([u32; 1], [u32; 1]))) -> C {
+        self.colour(light, highlight, texel)
     }
 }
 
@@ -449,16 +435,18 @@ impl<'f, P: Patch<Walker: Walker<Value = [u32; 2]>>, const ALIGNED: bool> Patch 
 }
 
 impl<W: Walker<Value = [u32; 2]>, const ALIGNED: bool> Walker for Placed<'_, W, ALIGNED> {
-    type Value = Aligned;
+    type Value = Colour;
 
     #[inline(always)]
     fn step(&mut self) {
         self.place.step();
     }
 
+    /// The texel.
     #[inline(always)]
-    fn value(&self) -> Aligned {
-        if ALIGNED { self.place.value() } else { self.sampler.aligned(self.place.value()) }
+    fn value(&self) -> Colour {
+        let place = self.place.value();
+        self.sampler.texel(if ALIGNED { place } else { self.sampler.aligned(place) })
     }
 
     const HAS_HOLES: bool = TRANSPARENCY;
@@ -469,59 +457,8 @@ impl<W: Walker<Value = [u32; 2]>, const ALIGNED: bool> Walker for Placed<'_, W, 
     }
 
     #[inline(always)]
-    fn covers(&self) -> bool {
-        self.sampler.covers(self.value())
-    }
-}
-
-/// The colours of a texture: shares of red, green and blue, Q1.[`COLOUR`]. Methods that interpolate such shares between corners draw textures by the same
-/// loops.
-#[derive(Clone, Copy, Debug)]
-pub(crate) struct Sampled<P>(P);
-
-impl<'f, P: Patch<Walker: Walker<Value = [u32; 2]>>> Patch for Sampled<Placed<'f, P>> {
-    type Walker = Sampled<Placed<'f, P::Walker>>;
-
-    #[inline(always)]
-    fn jump(&mut self, rows: i32) {
-        self.0.jump(rows);
-    }
-
-    #[inline(always)]
-    fn step_row(&mut self) {
-        self.0.step_row();
-    }
-
-    #[inline(always)]
-    fn enter(&self, x: i32) -> Self::Walker {
-        Sampled(self.0.enter(x))
-    }
-
-    /// More than there is room for.
-    const WORDS: usize = 1 << 8;
-}
-
-impl<W: Walker<Value = [u32; 2]>> Walker for Sampled<Placed<'_, W>> {
-    type Value = [u32; 3];
-
-    #[inline(always)]
-    fn step(&mut self) {
-        self.0.step();
-    }
-
-    #[inline(always)]
-    fn value(&self) -> [u32; 3] {
-        let Colour { channels: [r, g, b], .. } = self.0.sampler.texel(self.0.value());
-        // From 255 to 65,535 of 65,536.
-        let share = |channel: u8| u32::from(channel) * (257 << (COLOUR - SHARE));
-        [share(r), share(g), share(b)]
-    }
-
-    const HAS_HOLES: bool = TRANSPARENCY;
-
-    #[inline(always)]
-    fn covers(&self) -> bool {
-        self.0.covers()
+    fn covers(texel: &Colour) -> bool {
+        !TRANSPARENCY || texel.hole == 0
     }
 }
 

@@ -61,7 +61,7 @@ pub(crate) fn covered<W: Walker>(walker: &W, count: usize) -> u32 {
     let mut walker = walker.clone();
     (0..count).fold(0, |covered, _| {
         walker.step();
-        covered << 1 | u32::from(walker.covers())
+        covered << 1 | u32::from(W::covers(&walker.value()))
     })
 }
 

@@ -88,9 +88,12 @@ pub(crate) fn fill<S: DepthTest, W: Walker, T: PixelShader<W::Value>>(
         test.step();
         walker.step();
         if W::HAS_HOLES {
-            if test.is_nearer(depth, i) && walker.covers() {
-                pixels[i] = shader.shade(walker.value());
-                test.store(depth, i);
+            if test.is_nearer(depth, i) {
+                let value = walker.value();
+                if W::covers(&value) {
+                    pixels[i] = shader.shade(value);
+                    test.store(depth, i);
+                }
             }
         } else if test.passes(depth, i) {
             pixels[i] = shader.shade(walker.value());

@@ -4,7 +4,7 @@
 //! here: one light or two, and colours from a table or from sums.
 
 use crate::{
-    lighting::constant_lights::{Coloured, Shades},
+    lighting::constant_lights::{Coloured, Shades, SurfaceColour},
     pixel::by_rows::ByRows,
     raster::pixel_shader::PixelShader,
 };
@@ -42,10 +42,10 @@ impl<M, A: FromValues<M, V>, B: FromValues<M, W>, V, W> FromValues<M, (V, W)> fo
 }
 
 /// Light on a surface whose colour is walked beside it.
-impl<M, L: FromValues<M, V>, V> FromValues<M, (V, [u32; 3])> for Coloured<L> {
+impl<M, L: FromValues<M, V>, V, S: SurfaceColour> FromValues<M, (V, S)> for Coloured<L> {
     #[inline(always)]
-    fn from_values(common: &M, full: u16, (values, colour): (V, [u32; 3])) -> Self {
-        Self(L::from_values(common, full, values), colour)
+    fn from_values(common: &M, full: u16, (values, colour): (V, S)) -> Self {
+        Self(L::from_values(common, full, values), colour.shares())
     }
 }
 

@@ -14,7 +14,9 @@ use crate::{
     },
     lighting::{
         albedo::{Albedo, SHARE},
-        constant_lights::{COLOUR, Coloured, DiffuseOnly, LitColours, OneLightRamp, OneLightRgb, Shades, WithHighlight, node},
+        constant_lights::{
+            COLOUR, Coloured, DiffuseOnly, LitColours, OneLightRamp, OneLightRgb, Shades, SurfaceColour, WithHighlight, node,
+        },
         material_tables::MaterialTables,
     },
     math::{highlight_lookup, highlight_lookup::QuotientLookup, highlight_lut::HighlightLut, rsqrt::HalfRsqrt, vector::map},
@@ -203,7 +205,7 @@ fn draw_coloured<C: Pixel>(
 
 /// Draws as [`draw_in`] does, on a surface whose `colour` changes from pixel to pixel.
 #[inline(always)]
-fn draw_painted<C: Pixel, P: Patch<Walker: Walker<Value = [u32; 3]>>>(
+fn draw_painted<C: Pixel, P: Patch<Walker: Walker<Value: SurfaceColour>>>(
     setup: &TriangleSetup<'_>,
     cosines: &CornerCosines,
     lengths: &Lengths,
@@ -219,7 +221,7 @@ fn draw_painted<C: Pixel, P: Patch<Walker: Walker<Value = [u32; 3]>>>(
 
 /// Draws as [`draw_painted`] does, in these `colours`.
 #[inline(always)]
-fn draw_painted_in<C: Pixel, P: Patch<Walker: Walker<Value = [u32; 3]>>, T>(
+fn draw_painted_in<C: Pixel, P: Patch<Walker: Walker<Value: SurfaceColour>>, T>(
     setup: &TriangleSetup<'_>,
     cosines: &CornerCosines,
     lengths: &Lengths,
@@ -253,8 +255,8 @@ fn draw_textured<C: Pixel>(
     tables: MaterialTables<'_, C>,
     band: &mut Band<'_, C>,
 ) -> Option<u32> {
-    let sampled = setup.sampled()?;
-    draw_painted(setup, cosines, lengths, || sampled, tables, band)
+    let texels = setup.texels()?;
+    draw_painted(setup, cosines, lengths, || texels, tables, band)
 }
 
 /// Whether colours can be interpolated by a plane on the screen.

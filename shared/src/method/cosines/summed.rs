@@ -15,7 +15,7 @@ use crate::{
     },
     lighting::{
         albedo::{Albedo, SHARE},
-        constant_lights::{DiffuseOnly, LitColours, SUMMED, Summed, SummedRgb, cosine},
+        constant_lights::{DiffuseOnly, LitColours, SUMMED, Summed, SummedRgb, SurfaceColour, cosine},
         material_tables::MaterialTables,
         summed::{Sides, part},
     },
@@ -177,8 +177,8 @@ pub(super) fn draw<C: Pixel>(
     let patch = || (sums(setup, lengths, &lights.corners), lengths.square(setup));
     let shader = OneByOne { colours, lookup, lengths: HalfRsqrt::get(), lights, row: setup.gradients.row() };
     if setup.has_texture() {
-        let sampled = setup.sampled()?;
-        return Some(setup.fill(|| (Column, (sampled, ByColumn(patch()))), shader, band));
+        let texels = setup.texels()?;
+        return Some(setup.fill(|| (Column, (texels, ByColumn(patch()))), shader, band));
     }
     if VERTEX_COLOURS && let (Some(albedos), None) = (setup.albedos(), one_colour) {
         return is_plane(setup, albedos).then(|| setup.fill(|| (Column, ByColumn((colour(setup, albedos), patch()))), shader, band));
@@ -282,16 +282,16 @@ impl<C: Pixel> PixelShader<Value> for OneByOne<'_, C> {
 }
 
 /// The value at a pixel of a surface whose colour is walked: the column, the colour, and what follows in [`Value`].
-type ColouredValue = (i32, ([u32; 3], ([u32; 3], [u32; 1])));
+type ColouredValue<S> = (i32, (S, ([u32; 3], [u32; 1])));
 
-impl<C: Pixel> PixelShader<ColouredValue> for OneByOne<'_, C> {
+impl<C: Pixel, S: SurfaceColour> PixelShader<ColouredValue<S>> for OneByOne<'_, C> {
     type Pixel = C;
 
     #[inline(always)]
-    fn shade(&self, (column, (colour, (sums, [square]))): ColouredValue) -> C {
+    fn shade(&self, (column, (colour, (sums, [square]))): ColouredValue<S>) -> C {
         let half_reciprocal = HalfReciprocal(self.lengths.rsqrt(square) as i32);
         let levels = self.diffuse(column, sums, &half_reciprocal);
-        let painted = self.colours.painted(levels, self.lights.ambient, colour);
+        let painted = self.colours.painted(levels, self.lights.ambient, colour.shares());
         self.colours.mixed(self.with_highlights(column, painted, &half_reciprocal))
     }
 }
