@@ -145,9 +145,9 @@ impl Style {
         !self.by_canvas
     }
 
-    /// Whether loops for one constant light, or for two, can draw it.
+    /// Whether loops for one constant light, or for two where corners have no colours, can draw it.
     pub(crate) fn has_one_light_or_two(self) -> bool {
-        (1..=2).contains(&self.lights) && self.is_plain() && !self.is_coloured
+        self.is_plain() && (self.lights == 1 || self.lights == 2 && !self.is_coloured)
     }
 }
 

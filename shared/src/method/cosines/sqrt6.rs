@@ -11,16 +11,17 @@
 //! Domain: any lights; coarse triangles near a light need splitting.
 
 use crate::{
-    features::LIGHTS,
+    features::{LIGHTS, VERTEX_COLOURS},
     format::{LEVEL, WALK},
     interpolate::{
-        Constant,
+        Constant, Patch, Walker,
         by_column::ByColumn,
         field::{Field, Nodes},
         quadric::Quadric,
     },
     lighting::{
-        constant_lights::{DiffuseOnly, LitColours, OneLightRamp, OneLightRgb, Shades, WithHighlight, node},
+        albedo::Albedo,
+        constant_lights::{Coloured, DiffuseOnly, LitColours, OneLightRamp, OneLightRgb, Shades, SurfaceColour, WithHighlight, node},
         lights::Source,
         material_tables::MaterialTables,
         reflectance::{Highlight, Reflectance, Reflection},
@@ -30,6 +31,7 @@ use crate::{
         CornerCosines, Facts, HighlightField, Loops, Method, Middles, RANGE, Shading, Style, TriangleSetup, VertexLight,
         cosines::{
             lit::{AtPixel, FromValues, LitShader},
+            quotient::{colour, is_plane},
             two_lights::TwoLights,
         },
         largest,
@@ -166,6 +168,14 @@ fn draw_any<const ROOT: IsRoot, C: Pixel>(
         return draw_two::<ROOT, C>(setup, shading, tables, band);
     }
     let (cosines, rgb) = (&setup.corner_lights(), tables.one_light_rgb());
+    // `auto` draws coloured triangles by other methods.
+    if VERTEX_COLOURS
+        && ROOT
+        && !C::GRAY
+        && let Some(albedos) = setup.albedos()
+    {
+        return draw_coloured::<ROOT, C>(setup, cosines, albedos, shading, tables, band);
+    }
     let ramp = if rgb.is_some() { tables.diffuse_ramp() } else { Some(tables.one_light_ramp()?) };
     let has_no_highlight = largest(&cosines[1]) < setup.highlight_threshold(tables.reflectance);
     // What a table of colours declines in three channels has been drawn as if it had a highlight.
@@ -194,6 +204,80 @@ fn draw_rgb<const ROOT: IsRoot, C: Pixel>(
     band: &mut Band<'_, C>,
 ) -> Option<u32> {
     draw::<ROOT, C, _>(setup, corners, colours, shading, tables, band)
+}
+
+/// Draws as [`draw`] does, on a surface whose corners have colours, or with a texture.
+#[inline(never)]
+fn draw_coloured<const ROOT: IsRoot, C: Pixel>(
+    setup: &TriangleSetup<'_>,
+    corners: &CornerCosines,
+    albedos: &[Albedo; 3],
+    shading: &Shading<'_>,
+    tables: MaterialTables<'_, C>,
+    band: &mut Band<'_, C>,
+) -> Option<u32> {
+    if setup.has_texture() {
+        let texels = setup.texels()?;
+        return draw_painted::<ROOT, C, _>(setup, corners, || texels, shading, tables, band);
+    }
+    if !is_plane(setup, albedos) {
+        return None;
+    }
+    let Some(albedo) = Albedo::one(albedos) else {
+        return draw_painted::<ROOT, C, _>(setup, corners, || colour(setup, albedos), shading, tables, band);
+    };
+    let sums = &tables.painted_sums(albedo);
+    let colours = OneLightRgb::of(sums);
+    let [towards, half] = corners;
+    if setup.leaves_out_highlight(tables.reflectance, half) {
+        setup.count(band.top, &mut band.counts.without_highlight, 1);
+        let patch = || diffuse(setup, colours.diffuse(), setup.six_at(setup.middles(), *towards));
+        return Some(setup.fill(patch, LitShader::of::<DiffuseOnly>(colours, Diffuse), band));
+    }
+    draw_rgb::<ROOT, C>(setup, corners, colours, shading, tables, band)
+}
+
+/// Draws as [`draw`] does, on a surface whose `colour` changes from pixel to pixel.
+#[inline(always)]
+fn draw_painted<const ROOT: IsRoot, C: Pixel, P: Patch<Walker: Walker<Value: SurfaceColour>>>(
+    setup: &TriangleSetup<'_>,
+    corners: &CornerCosines,
+    colour: impl Fn() -> P,
+    shading: &Shading<'_>,
+    tables: MaterialTables<'_, C>,
+    band: &mut Band<'_, C>,
+) -> Option<u32> {
+    match tables.neutral_rgb() {
+        Some(colours) => draw_painted_in::<ROOT, C, _, P>(setup, corners, colours, colour, shading, tables, band),
+        None => draw_painted_in::<ROOT, C, _, P>(setup, corners, tables.coloured_rgb(), colour, shading, tables, band),
+    }
+}
+
+/// Draws as [`draw_painted`] does, in these `colours`.
+#[inline(always)]
+fn draw_painted_in<const ROOT: IsRoot, C: Pixel, T, P: Patch<Walker: Walker<Value: SurfaceColour>>>(
+    setup: &TriangleSetup<'_>,
+    &[towards, half]: &CornerCosines,
+    colours: T,
+    colour: impl Fn() -> P,
+    shading: &Shading<'_>,
+    tables: MaterialTables<'_, C>,
+    band: &mut Band<'_, C>,
+) -> Option<u32>
+where
+    T: Shades<Coloured<DiffuseOnly>, Pixel = C> + Shades<Coloured<WithHighlight>, Pixel = C>,
+{
+    let light = || diffuse(setup, colours.diffuse(), setup.six_at(setup.middles(), towards));
+    if setup.leaves_out_highlight(tables.reflectance, &half) {
+        setup.count(band.top, &mut band.counts.without_highlight, 1);
+        return Some(setup.fill(|| (light(), colour()), LitShader::of::<Coloured<DiffuseOnly>>(colours, Diffuse), band));
+    }
+    if setup.resumed(band).is_none() && !setup.gradients.walks_in_words() && !is_exact(setup, half, tables.reflectance) {
+        return None;
+    }
+    let lookup = DefectLookup::new(shading.reflectance.table()?);
+    let patch = || ((light(), highlight::<ROOT>(setup, half, lookup, shading.exponent)), colour());
+    Some(setup.fill(patch, LitShader::of::<Coloured<WithHighlight>>(colours, lookup), band))
 }
 
 /// Draws `setup` under two constant lights.
