@@ -153,7 +153,7 @@ fn animate<D: Display>(
         defmt::info!("triangles of hidden objects {=u32}", hidden);
         defmt::info!(
             "budget {=u8}/8 of 255: triangles in one colour {=u32}, linear {=u32}, quadratic {=u32}, cosines {=u32}, Phong {=u32}",
-            stream.header.budget,
+            renderer.budget().to_bits(),
             one,
             linear,
             quadratic,

@@ -109,7 +109,7 @@ impl<'a, C: Pixel> Renderer<'a, C> {
             antialias: false,
             outlines: None,
             lacking_tables: 0,
-            budget: level(stream.header.budget()),
+            budget: level(stream.header.budget().unwrap_or(C::BUDGET)),
             #[cfg(feature = "skips")]
             skips: crate::frame::Skips::ALL,
             levels_of_detail: true,
@@ -236,8 +236,8 @@ impl<'a, C: Pixel> Renderer<'a, C> {
     }
 
     /// Sets the error budget of [`Shader::AUTO`] and [`Shader::AUTO_LINEAR`]: the largest difference of a pixel from Phong shading, in
-    /// units of 1/255 of full intensity, from 1/2 to 16. A larger budget is faster. The default is stored in the stream (mesh file). Other
-    /// methods ignore it.
+    /// units of 1/255 of full intensity, from 1/2 to 16. A larger budget is faster. The default is the budget that the stream (mesh file) states. If it
+    /// states none, the default is [`Pixel::BUDGET`]. Other methods ignore it.
     ///
     /// # Errors
     /// Returns [`RenderError::Budget`] if the budget is less than [`LEAST_BUDGET`] or more than [`LARGEST_BUDGET`]. The budget then stays.
@@ -248,6 +248,12 @@ impl<'a, C: Pixel> Renderer<'a, C> {
         self.settings.budget = level(budget);
         self.scene.set_view_changed();
         Ok(())
+    }
+
+    /// Returns the error budget that [`Self::set_budget`] sets.
+    #[must_use]
+    pub fn budget(&self) -> ErrorBudget {
+        ErrorBudget::from_bits((self.settings.budget >> (LEVEL - ErrorBudget::FRAC_NBITS)) as u8)
     }
 
     /// Turns dither on or off; the default is on. Dither hides the visible steps between colours of few bits. The next frame computes the

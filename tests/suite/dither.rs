@@ -7,6 +7,7 @@ use embedded_graphics::{
 };
 use microphong::{
     Renderer,
+    format::ErrorBudget,
     method::cosines::sqrt6::Sqrt6,
     pixel::{FromDrawn, Light, LightGray, Pixel, PixelFormat, Rgb332, Rgb565Be, dither::threshold},
 };
@@ -18,9 +19,10 @@ use microphong_sim::{
 
 const SIZE: Size = Size::new(120, 90);
 
+/// Pictures in all formats have one error budget.
 fn shown<C: Pixel, F: FromDrawn<C>>(scene: &str, style: Style) -> Vec<[u8; 3]> {
-    let scene = scene::load(scene).expect("built-in scene");
-    let stream = scene.stream.parse().expect("a stream");
+    let stream = scene::load(scene).expect("built-in scene").stream.with_budget(ErrorBudget::ONE);
+    let stream = stream.parse().expect("a stream");
     let (pixels, _) = render::frame_by::<C, F>(stream, SIZE, style, style.shader.on(), 16, 3).expect("a picture");
     pixels.into_iter().map(F::channels).collect()
 }

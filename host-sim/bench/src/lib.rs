@@ -24,7 +24,7 @@ use board_styles::Program;
 use embedded_graphics_core::{geometry::Size, pixelcolor::Rgb565};
 use flash::Graph;
 pub use measurement::{Measurement, Timing};
-use microphong::renderer::check;
+use microphong::{pixel::Pixel as _, renderer::check};
 use microphong_boards::{self as boards, Board, elf::Elf};
 use microphong_compare::Reference;
 use microphong_models::scene::Scene;
@@ -94,7 +94,7 @@ impl Bench {
     pub fn measure(&self, scene: &Scene, wanted: &[(Processor, Shader)], tick: &(dyn Fn() + Sync)) -> Result<Vec<Measurement>> {
         let mut measured = self.count(scene, wanted, tick)?;
         // Lines would hide errors of shading.
-        let shaded = scene.stream.clone().without_outlines();
+        let shaded = scene.stream.clone().without_outlines().or_budget(Rgb565::BUDGET);
         let stream = shaded.parse()?;
         // No reference draws several objects.
         if !stream.instances.is_empty() {

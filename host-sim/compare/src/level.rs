@@ -118,6 +118,12 @@ pub fn is_one_channel(stream: &Stream<'_>, material: &Material) -> bool {
     !reflectance.three_channels()
 }
 
+/// The error budget of [`picture`], in 1/255.
+#[must_use]
+pub fn budget(stream: &Stream<'_>) -> f64 {
+    stream.header.budget().unwrap_or(Fine::BUDGET).to_num()
+}
+
 /// The way that a method chooses for each triangle of [`picture`]; `None` unless the method has an error budget.
 ///
 /// # Errors

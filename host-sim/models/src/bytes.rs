@@ -54,6 +54,16 @@ impl StreamBytes {
         self.with_header(|header| header.budget = budget.to_bits())
     }
 
+    /// States this budget, unless the stream states one.
+    #[must_use]
+    pub fn or_budget(self, budget: ErrorBudget) -> Self {
+        self.with_header(|header| {
+            if header.budget().is_none() {
+                header.budget = budget.to_bits();
+            }
+        })
+    }
+
     /// Changes the header.
     fn with_header(mut self, change: impl FnOnce(&mut Header)) -> Self {
         let length = self.length;

@@ -181,8 +181,8 @@ pub struct Look {
     pub background: Background,
     /// Highlights see the eye where it is, not infinitely far.
     pub local_viewer: bool,
-    /// The error budget of the method.
-    pub budget: ErrorBudget,
+    /// The error budget of the method; `None` if the display decides.
+    pub budget: Option<ErrorBudget>,
     /// Method unless another one is asked for.
     pub shader: Shader,
     /// Camera.
@@ -211,7 +211,7 @@ impl Look {
             ambient: [1.0; 3],
             background: BACKGROUND.into(),
             local_viewer: false,
-            budget: ErrorBudget::ONE,
+            budget: None,
             shader: Shader::AUTO,
             view,
             frames: view.period.max(1),
@@ -272,7 +272,7 @@ impl Look {
             background,
             background_bottom,
             labels: u8::try_from(self.labels.len()).context("too many labels for one scene; there may be 255")?,
-            budget: self.budget.to_bits(),
+            budget: self.budget.map_or(0, ErrorBudget::to_bits),
             ambient: self.ambient.map(gain).map(Gain::to_bits),
             ..self.seen(parts)
         };

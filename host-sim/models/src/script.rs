@@ -113,7 +113,7 @@ fn read(text: &str, folder: Option<&Path>, warn: &dyn Fn(&str)) -> Result<(Strea
     look.objects = names;
     look.background = background.unwrap_or(look.background);
     look.shader = shader.unwrap_or(look.shader);
-    look.budget = budget.map_or(look.budget, nearest::<ErrorBudget>);
+    look.budget = budget.map(nearest::<ErrorBudget>);
     look.lamps = vec![Lamp::fixed(KEY.map(|c| -c), [1.0; 3])];
     if !lights.is_empty() {
         look.lamps = lights.into_iter().enumerate().map(|(i, table)| lamp(table, i, &mut cast)).collect::<Result<_>>()?;

@@ -281,13 +281,15 @@ fn told<C: Pixel>(
     size: Size,
     perspective_correct: bool,
     number: u32,
-) -> anyhow::Result<(Vec<C>, Stats, Choices)> {
+) -> anyhow::Result<(Vec<C>, Stats, Told)> {
     let telling: &'static dyn Method = if shader == Shader::AUTO { &Telling::<true> } else { &Telling::<false> };
     let style = Style { perspective_correct, ..shader.into() };
     CHOICES.set(Choices::NONE);
     WAYS.set((stream.triangles.as_ptr().addr(), vec![None; stream.triangles.len()]));
     let (pixels, stats) = render::frame_by(stream, size, style, microphong::Shader::new(telling), size.height, number)?;
-    Ok((pixels, stats, CHOICES.get()))
+    let (_, ways) = WAYS.take();
+    let budget = stream.header.budget().unwrap_or(C::BUDGET).to_num();
+    Ok((pixels, stats, Told { budget, choices: CHOICES.get(), ways }))
 }
 
 /// The choices of a method in frame `number` of a picture in the pixel format `C`; `None` unless the method has an error budget.
@@ -304,9 +306,8 @@ pub fn by<C: Pixel>(
     if !shader.keeps_budget() {
         return Ok(None);
     }
-    let (_, _, choices) = told::<C>(shader, stream, size, perspective_correct, number)?;
-    let (_, ways) = WAYS.take();
-    Ok(Some(Told { budget: stream.header.budget().to_num(), choices, ways }))
+    let (_, _, told) = told::<C>(shader, stream, size, perspective_correct, number)?;
+    Ok(Some(told))
 }
 
 /// Draws frame `number` by a method that keeps a budget, in this size, format and perspective, each triangle painted in the colour of its way, in 8 bits per
@@ -314,16 +315,16 @@ pub fn by<C: Pixel>(
 ///
 /// # Errors
 /// When the size is out of range.
-pub fn painted(stream: Stream<'_>, settings: &Settings, number: u32) -> anyhow::Result<(Picture, Choices)> {
+pub fn painted(stream: Stream<'_>, settings: &Settings, number: u32) -> anyhow::Result<(Picture, Told)> {
     struct Paint<'a>(Stream<'a>, &'a Settings, u32);
     impl InFormat for Paint<'_> {
-        type Output = anyhow::Result<(Picture, Choices)>;
+        type Output = anyhow::Result<(Picture, Told)>;
 
         fn in_format<C: Pixel, F: FromDrawn<C>>(self) -> Self::Output {
             let Self(stream, s, number) = self;
-            let (pixels, stats, choices) = told::<Traced<C>>(s.style.shader, stream, s.size, s.style.perspective_correct, number)?;
+            let (pixels, stats, told) = told::<Traced<C>>(s.style.shader, stream, s.size, s.style.perspective_correct, number)?;
             let painted: Vec<_> = pixels.into_iter().map(Traced::painted).collect();
-            Ok((Picture { rgb: rgb_bytes(&painted), crc: render::crc(&painted), stats }, choices))
+            Ok((Picture { rgb: rgb_bytes(&painted), crc: render::crc(&painted), stats }, told))
         }
     }
     settings.format.run(Paint(stream, settings, number))

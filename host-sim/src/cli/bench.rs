@@ -42,7 +42,7 @@ pub(crate) struct Arguments {
     #[arg(long, value_name = "S,...", default_value = "flat,gouraud,six-point,sqrt6,phong", value_parser = parse::SeveralShaders)]
     shader: Several<Shader>,
     /// Error budgets of auto and auto-linear, separated by commas: the largest difference of a pixel from Phong shading, in 1/255, from 0.5 to 16. The
-    /// default is the budget of the scene.
+    /// default is the budget of the scene. If it has none, the budget is 4, as on all RGB565 displays.
     #[arg(long, value_name = "LSB,...", value_delimiter = ',', value_parser = parse::budget)]
     budget: Vec<ErrorBudget>,
     /// Boards, separated by commas: mps2-an385 (Cortex-M3), mps2-an386 (Cortex-M4F), pico (Cortex-M0+), x86-64 (this computer);

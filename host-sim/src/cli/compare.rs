@@ -32,7 +32,7 @@ pub(crate) struct Arguments {
     #[arg(long, default_value = "all", value_name = "S,...", value_parser = parse::SeveralShaders)]
     shader: Several<Shader>,
     /// Error budget of auto and auto-linear: the largest difference of a pixel from Phong shading, in 1/255, from 0.5 to 16. The default is the
-    /// budget of the scene.
+    /// budget of the scene. If it has none, the budget is 1, as on displays with 8 bits a channel.
     #[arg(long, value_name = "LSB", value_parser = parse::budget)]
     budget: Option<ErrorBudget>,
     /// Exponent of all highlights, 1 to 1024, in scenes of every kind. The default is the exponent of each material.

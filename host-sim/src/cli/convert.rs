@@ -74,7 +74,8 @@ pub(crate) struct Arguments {
     /// emulated; this needs a build with `--features boards`.
     #[arg(long)]
     count: bool,
-    /// Error budget of auto and auto-linear: the largest difference of a pixel from Phong shading, in 1/255, from 0.5 to 16. The default is 1.
+    /// Error budget of auto and auto-linear: the largest difference of a pixel from Phong shading, in 1/255, from 0.5 to 16. By
+    /// default the display decides: 1 if its channels have 8 bits, 4 if they have 5 or 6, and 8 if they have fewer.
     #[arg(long, value_name = "LSB", value_parser = parse::budget)]
     budget: Option<ErrorBudget>,
     /// Size of the picture that the mesh fills. By default the mesh fits the narrower side, so that the whole turn is visible on displays of every
@@ -214,7 +215,7 @@ pub(crate) fn run(arguments: &Arguments) -> Result<Outcome> {
     let bars = Bars::default();
     let options = Options { size: arguments.size.unwrap_or(SQUARE), ..options };
     let mut converted = Converted::read(source, &options, &bars)?;
-    converted.look.budget = arguments.budget.unwrap_or(ErrorBudget::ONE);
+    converted.look.budget = arguments.budget;
     converted.look.shader = shader;
     let bytes = converted.stream().and_then(|bytes| arguments.outlined(bytes)).with_context(|| source.display().to_string())?;
     let stream = bytes.view()?;

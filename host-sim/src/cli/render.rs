@@ -6,7 +6,7 @@ use embedded_graphics_core::geometry::Size;
 use microphong::{Skips, Stream, format::ErrorBudget, renderer::check, stream::record::OPEN};
 use microphong_sim::{
     bytes::StreamBytes,
-    choices::{self, Choices},
+    choices::{self, Choices, Told},
     image::{self, Film},
     legend, output,
     render::{self, Format, Picture, Settings, Style},
@@ -29,7 +29,7 @@ pub(crate) struct Arguments {
     #[arg(long, value_parser = parse::Shaders)]
     shader: Option<Shader>,
     /// Error budget of auto and auto-linear: the largest difference of a pixel from Phong shading, in 1/255, from 0.5 to 16. The default is the
-    /// budget of the scene.
+    /// budget of the scene. If it has none, the pixel format decides: 1 for 8 bits a channel, 4 for 5 or 6 bits, and 8 for fewer.
     #[arg(long, value_name = "LSB", value_parser = parse::budget)]
     budget: Option<ErrorBudget>,
     /// Size of the picture. The default is the size of the scene, or 640x480 for model files.
@@ -91,7 +91,7 @@ Examples:
   microphong render mesh.tri --format binary --size 128x64
   microphong render bunny --frames 120 -o bunny.apng
   microphong render torus --frames 30 -o frames/
-  microphong render teapot --show methods --budget 4";
+  microphong render teapot --show methods --budget 1";
 
 /// The curve of a display.
 #[derive(Clone, Copy, PartialEq, Eq, clap::ValueEnum)]
@@ -190,7 +190,7 @@ pub(crate) fn run(arguments: &Arguments) -> Result<Outcome> {
     let mut lines = Vec::new();
     for number in 0..frames {
         let drawn = draw(arguments.show, stream, &settings, arguments.first.wrapping_add(number));
-        let (picture, choices) = drawn.with_context(|| scene.name.clone())?;
+        let (picture, told) = drawn.with_context(|| scene.name.clone())?;
         let output = writer.add(number, &picture.rgb)?;
         let stats = picture.stats;
         bar.inc(1);
@@ -206,8 +206,8 @@ pub(crate) fn run(arguments: &Arguments) -> Result<Outcome> {
             pixels: stats.pixels,
             crc: format!("{:08x}", picture.crc),
             output: output.to_string_lossy().into_owned(),
-            budget: choices.map(|_| stream.header.budget().to_num()),
-            choices,
+            budget: told.as_ref().map(|told| told.budget),
+            choices: told.map(|told| told.choices),
         });
     }
     writer.finish()?;
@@ -233,11 +233,11 @@ fn method(arguments: &Arguments, stream: &Stream<'_>) -> Result<Shader> {
 }
 
 /// Draws frame `number`, or what is to be shown in its place.
-fn draw(show: Option<Show>, stream: Stream<'_>, settings: &Settings, number: u32) -> Result<(Picture, Option<Choices>)> {
+fn draw(show: Option<Show>, stream: Stream<'_>, settings: &Settings, number: u32) -> Result<(Picture, Option<Told>)> {
     let Some(Show::Methods) = show else { return Ok((render::picture(stream, settings, number)?, None)) };
-    let (mut picture, choices) = choices::painted(stream, settings, number)?;
-    legend::add(&mut picture.rgb, settings.size.width, &choices);
-    Ok((picture, Some(choices)))
+    let (mut picture, told) = choices::painted(stream, settings, number)?;
+    legend::add(&mut picture.rgb, settings.size.width, &told.choices);
+    Ok((picture, Some(told)))
 }
 
 /// Where pictures are written.

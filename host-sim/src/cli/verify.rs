@@ -31,7 +31,7 @@ pub(crate) struct Arguments {
     #[arg(long, default_value = "all", value_parser = parse::SeveralShaders)]
     shader: Several<Shader>,
     /// Error budget of auto and auto-linear: the largest difference of a pixel from Phong shading, in 1/255, from 0.5 to 16. The default is the
-    /// budget of the scene.
+    /// budget of the scene. If it has none, the pixel format decides: 1 for 8 bits a channel, 4 for 5 or 6 bits, and 8 for fewer.
     #[arg(long, value_name = "LSB", value_parser = parse::budget)]
     budget: Option<ErrorBudget>,
     /// Draw smooth outlines, on boards that have the memory for them: mps2-an385, mps2-an386.

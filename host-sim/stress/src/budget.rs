@@ -92,7 +92,7 @@ pub fn judge(case: &Case) -> Option<Found> {
     let frame = of(stream, (width, height), number);
     let picture = |shader| level::picture(stream, Size::new(width, height), Style { shader, ..case.style }, number).ok();
     let (drawn, by_phong) = (picture(case.style.shader)?, picture(Shader::PHONG)?);
-    let right = allowed(stream.header.budget().to_num(), frame.lights.len());
+    let right = allowed(level::budget(&stream), frame.lights.len());
     let mut shades: HashMap<u32, (Shade<'_>, bool)> = HashMap::new();
     let mut worst = 0f64;
     for (pixel, sights) in (0..).zip(frame.visible()) {

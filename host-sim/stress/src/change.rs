@@ -41,7 +41,7 @@ pub struct State {
     frame: u32,
     /// The style of drawing.
     pub style: Style,
-    budget: ErrorBudget,
+    budget: Option<ErrorBudget>,
     levels_of_detail: bool,
 }
 
@@ -134,7 +134,7 @@ impl State {
         renderer.set_shader(shader.on())?;
         renderer.set_perspective_correct(perspective_correct)?;
         renderer.set_antialias(antialias)?;
-        renderer.set_budget(self.budget)
+        self.budget.map_or(Ok(()), |budget| renderer.set_budget(budget))
     }
 
     /// Whether the viewer may be as near as this camera says, and lights near.
@@ -388,7 +388,7 @@ impl Change {
             Self::Antialias(on) => state.style.antialias = on,
             Self::Dither(on) => state.style.dither = on,
             Self::Gamma(on) => state.style.srgb = on,
-            Self::Budget(budget) => state.budget = budget,
+            Self::Budget(budget) => state.budget = Some(budget),
             Self::LevelsOfDetail(on) => state.levels_of_detail = on,
         }
     }

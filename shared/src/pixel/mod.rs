@@ -20,7 +20,7 @@ pub use ramps::{InTurn, Rounded};
 
 use crate::{
     arch::SATURATES,
-    format::{CHANNEL, Intensity, RAMP, WALK},
+    format::{CHANNEL, ErrorBudget, Intensity, RAMP, WALK},
     pixel::{dither::quantise, ramps::Ramps},
 };
 use core::hint::black_box;
@@ -67,6 +67,20 @@ pub trait Pixel: PixelFormat {
     const COARSE: bool = {
         let [r, g, b] = Self::DEPTH;
         r < 8 && g < 8 && b < 8
+    };
+    /// The error budget of [`Shader::AUTO`](crate::Shader::AUTO) where neither the stream nor [`set_budget`](crate::Renderer::set_budget) states one, in
+    /// units of 1/255 of full intensity. It is 1 for channels of eight bits, 4 for channels of five to seven bits, and 8 for fewer. The steps of such
+    /// displays are 1, 2 to 8, and 17 to 255 of 255, so that they cannot show a smaller error.
+    const BUDGET: ErrorBudget = {
+        let [r, g, b] = Self::DEPTH;
+        let steps = if r >= 8 || g >= 8 || b >= 8 {
+            1
+        } else if r >= 5 || g >= 5 || b >= 5 {
+            4
+        } else {
+            8
+        };
+        ErrorBudget::from_bits(steps << ErrorBudget::FRAC_NBITS)
     };
     /// The number of bits of each channel to which levels of light are scaled and rounded.
     #[doc(hidden)]

@@ -352,7 +352,7 @@ impl<'a> Stream<'a> {
     fn check(&self) -> Result<(), StreamError> {
         let header = self.header;
         field(header.frames > 0, "frames", 0)?;
-        field((LEAST_BUDGET..=LARGEST_BUDGET).contains(&header.budget()), "budget", 0)?;
+        field(header.budget().is_none_or(|budget| (LEAST_BUDGET..=LARGEST_BUDGET).contains(&budget)), "budget", 0)?;
         field(self.lights.len() <= MAX_LIGHTS, "lights", 0)?;
         field(header.outlines <= OUTLINES_ALONE, "outlines", 0)?;
         let has_outlines = header.outlines != NO_OUTLINES;

@@ -65,8 +65,8 @@ pub struct Header {
     /// The background colour of the first row: red, green, blue, each 0 to 255.
     #[doc(hidden)]
     pub background: [u8; 3],
-    /// The error budget of [`Shader::AUTO`](crate::Shader::AUTO) as an integer, in units of 1/8 of 1/255 of full intensity: 4 to 128.
-    /// [`Self::budget`] returns it as a number.
+    /// The error budget of [`Shader::AUTO`](crate::Shader::AUTO) as an integer, in units of 1/8 of 1/255 of full intensity: 4 to 128. If it is 0, the
+    /// display decides. [`Self::budget`] returns it as a number.
     #[doc(hidden)]
     pub budget: u8,
     /// The ambient light as integers: red, green, blue, each 0 to 32,768, where 16,384 is full intensity. [`Self::ambient`] returns it as
@@ -121,10 +121,11 @@ impl Header {
     }
 
     /// Returns the error budget of [`Shader::AUTO`](crate::Shader::AUTO): the largest difference of a pixel from Phong shading, in units of
-    /// 1/255 of full intensity, from 1/2 to 16.
+    /// 1/255 of full intensity, from 1/2 to 16. If the stream states none, the budget is [`Pixel::BUDGET`](crate::pixel::Pixel::BUDGET) of the pixel
+    /// format.
     #[must_use]
-    pub fn budget(&self) -> ErrorBudget {
-        ErrorBudget::from_bits(self.budget)
+    pub fn budget(&self) -> Option<ErrorBudget> {
+        (self.budget > 0).then(|| ErrorBudget::from_bits(self.budget))
     }
 }
 
