@@ -141,13 +141,13 @@ impl Lens {
     /// [`Self::place`] under parallel rays.
     #[inline]
     fn parallel_place(&self, c: i32) -> i32 {
-        saturated((i64::from(c) * self.focal + (1 << (UNIT + 15))) >> (UNIT + 16))
+        narrowed::<{ UNIT + 16 }>(i64::from(c) * self.focal + (1 << (UNIT + 15)))
     }
 
     /// [`Self::depth`] under parallel rays.
     #[inline]
     fn parallel_depth(&self, z: i32) -> i32 {
-        saturated((i64::from(self.far - z) * self.inv_depth) >> UNIT).max(FARTHEST)
+        narrowed::<UNIT>(i64::from(self.far - z) * self.inv_depth).max(FARTHEST)
     }
 
     /// Whether the camera is perspective, so that rays meet in the eye.
@@ -248,6 +248,15 @@ fn limited(c: i32) -> i32 {
     c.clamp(-GUARD, GUARD)
 }
 
+/// `value / 2^BITS`, rounded down. A value that does not fit 32 bits becomes a number near the end that it exceeds: only the upper half is compared,
+/// because a comparison of long numbers takes longer.
+#[inline(always)]
+fn narrowed<const BITS: u32>(value: i64) -> i32 {
+    const { assert!(BITS > 0 && BITS < 32) };
+    let upper = ((value >> 32) as i32).clamp(-1 << (BITS - 1), (1 << (BITS - 1)) - 1);
+    upper << (32 - BITS) | (value as u32 >> BITS) as i32
+}
+
 /// The nearest value that fits 32 bits.
 #[inline]
 fn saturated(value: i64) -> i32 {
@@ -277,6 +286,26 @@ pub(crate) mod tests {
         near: 1 << 12,
         far: 1 << 15,
     };
+
+    /// Narrowed values are exact as far as a screen or a depth reaches, and all others stay beyond.
+    #[test]
+    fn narrowed_values_saturate() {
+        const REACH: i64 = 1 << (DEPTH + 1);
+        let checked = |value: i64| {
+            let within =
+                |narrowed: i32, bits: u32| assert_eq!(i64::from(narrowed).clamp(-REACH, REACH), (value >> bits).clamp(-REACH, REACH));
+            within(narrowed::<{ UNIT + 16 }>(value), UNIT + 16);
+            within(narrowed::<UNIT>(value), UNIT);
+        };
+        for bits in 0..63 {
+            for value in [(1i64 << bits) - 1, 1 << bits, 3 << bits >> 1, (1 << bits) + 12_345] {
+                checked(value);
+                checked(-value);
+            }
+        }
+        checked(i64::MAX);
+        checked(i64::MIN);
+    }
 
     /// A vertex beyond the far plane of parallel rays has no depth, even if rounding makes its depth smaller than the plane's; it must not wrap to
     /// the nearest depth.

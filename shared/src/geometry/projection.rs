@@ -28,6 +28,11 @@ pub struct ScreenVertex {
     pub state: State,
 }
 
+impl ScreenVertex {
+    /// A vertex that is not transformed.
+    pub(crate) const IDLE: Self = Self { x: 0, y: 0, depth: 0, light: [0; 4], state: State::IDLE };
+}
+
 /// The state of a cached vertex in this frame.
 #[derive(FromBytes, IntoBytes, Immutable, KnownLayout, Clone, Copy, Debug, PartialEq, Eq)]
 #[repr(transparent)]

@@ -122,7 +122,7 @@ impl MeshPass<'_> {
         let [a, c, b] = triangle.corners.map(|corner| self.vertices.get(usize::from(corner)));
         let (Some(a), Some(b), Some(c)) = (a, b, c) else { return 0 };
         let vertices = [a, b, c];
-        let [a, b, c] = &vertices.map(|vertex| self.stage.transform(vertex));
+        let [a, b, c] = &vertices.map(|vertex| self.stage.transformed(vertex));
         // Decision: clip.
         if is_ready(&[a, b, c]) {
             return self.set_up_placed(&MeshTriangle { corners: [a, b, c], triangle, vertices: self.vertices, paint }, target);
@@ -131,7 +131,7 @@ impl MeshPass<'_> {
         let polygon = clip::clip_painted(self.stage.view, vertices, paint.attributes());
         let place = |cut: &clip::Cut| {
             let [x, y, depth] = cut.place;
-            ScreenVertex { x, y, depth, ..self.stage.transform(&cut.vertex) }
+            ScreenVertex { x, y, depth, ..self.stage.transformed(&cut.vertex) }
         };
         let Some((first, rest)) = polygon.split_first() else { return 0 };
         let mut pixels = 0;

@@ -106,7 +106,7 @@ impl VertexStage<'_> {
         for ((screen, place), vertex) in cached.iter_mut().zip(seam).zip(vertices) {
             if *place != UNUSED {
                 if screen.state == State::IDLE {
-                    *screen = self.transform(vertex);
+                    self.transform(vertex, screen);
                 }
                 self.light_up(screen, vertex);
             }
@@ -132,7 +132,7 @@ impl VertexStage<'_> {
         let screen = cached.get_mut(usize::from(corner).wrapping_sub(first))?;
         if screen.state != State::READY {
             if screen.state == State::IDLE {
-                *screen = self.transform(vertices.get(usize::from(corner))?);
+                self.transform(vertices.get(usize::from(corner))?, screen);
             }
             if screen.state != State::READY {
                 return None;
@@ -141,11 +141,21 @@ impl VertexStage<'_> {
         Some([screen.x, screen.y])
     }
 
-    /// Transforms a vertex, and lights it if the method needs that.
+    /// Transforms a vertex to `screen`, and lights it if the method needs that. It is not returned, because it would be copied.
     #[inline(never)]
-    pub(crate) fn transform(&self, vertex: &Vertex) -> ScreenVertex {
+    fn transform(&self, vertex: &Vertex, screen: &mut ScreenVertex) {
         let ([x, y, depth], inside) = self.view.lens.project(self.view.to_eye(vertex.position));
-        ScreenVertex { x, y, depth, light: self.light_at(vertex), state: if inside { State::READY } else { State::OUTSIDE } }
+        (screen.x, screen.y, screen.depth) = (x, y, depth);
+        screen.state = if inside { State::READY } else { State::OUTSIDE };
+        screen.light = self.light_at(vertex);
+    }
+
+    /// A vertex that is not cached, transformed and lit.
+    #[inline(never)]
+    pub(crate) fn transformed(&self, vertex: &Vertex) -> ScreenVertex {
+        let mut screen = ScreenVertex::IDLE;
+        self.transform(vertex, &mut screen);
+        screen
     }
 
     /// The light of a vertex, as [`ScreenVertex::light`] describes it.
@@ -209,7 +219,7 @@ impl VertexStage<'_> {
         let [a, b, c] = triangle.corners.map(|corner| vertices.get(usize::from(corner)));
         // Clockwise, which is against the order of the stream.
         let vertices = [a?, c?, b?];
-        let corners = vertices.map(|vertex| self.transform(vertex));
+        let corners = vertices.map(|vertex| self.transformed(vertex));
         if corners.iter().all(|corner| corner.state == State::READY) {
             viewport.bounds_of(corners.each_ref())
         } else {
