@@ -68,19 +68,20 @@ impl DepthElision {
     /// Takes a triangle into account that may show its front: marks the cells around it unless it is thick.
     #[inline(always)]
     pub(crate) fn include(&mut self, extent: &Extent) {
-        let inside = self.is_inside([extent.left, extent.right], [extent.top, extent.bottom]);
+        let (columns, rows) = ([extent.left, extent.right], [extent.top, extent.bottom]);
         // The thickness is at least twice the area over the length.
-        if !inside || extent.area.unsigned_abs() < (self.thickness * extent.length()) as u32 {
-            self.mark(extent);
+        if !self.is_inside(columns, rows) || extent.area.unsigned_abs() < (self.thickness * extent.length()) as u32 {
+            self.mark(columns, rows);
         }
     }
 
+    // Not by an extent: if its address were taken, that of every triangle would lie in memory.
     #[inline(never)]
-    fn mark(&mut self, extent: &Extent) {
+    fn mark(&mut self, [left, right]: [i32; 2], [top, bottom]: [i32; 2]) {
         let ([width, height], around) = (self.size, self.thickness);
         // `clamp` panics if the ends are in the wrong order.
-        let columns = [extent.left - around, extent.right + around].map(|x| x.max(0).min(width));
-        let rows = [extent.top - around, extent.bottom + around].map(|y| y.max(0).min(height));
+        let columns = [left - around, right + around].map(|x| x.max(0).min(width));
+        let rows = [top - around, bottom + around].map(|y| y.max(0).min(height));
         let (rows, columns) = self.cells(columns, rows);
         self.marked.get_mut(rows).unwrap_or_default().iter_mut().for_each(|row| *row |= columns);
     }
