@@ -158,9 +158,10 @@ impl Extent {
     #[inline]
     #[must_use]
     pub fn new([[x0, y0], [x1, y1], [x2, y2]]: [[i32; 2]; 3]) -> Self {
-        let (left, right) = (x0.min(x1).min(x2), x0.max(x1).max(x2));
-        let (top, bottom) = (y0.min(y1).min(y2), y0.max(y1).max(y2));
+        // From the first corner, because comparisons with zero are single instructions.
         let (x1, y1, x2, y2) = (x1 - x0, y1 - y0, x2 - x0, y2 - y0);
+        let (left, right) = (x0 + x1.min(0).min(x2), x0 + x1.max(0).max(x2));
+        let (top, bottom) = (y0 + y1.min(0).min(y2), y0 + y1.max(0).max(y2));
         // Products of 64 bits are calls on an M0+.
         let area = if (right - left) | (bottom - top) < 1 << 15 { x1 * y2 - x2 * y1 } else { large_area([x1, y1], [x2, y2]) };
         Self { left, right, top, bottom, area }
