@@ -12,6 +12,10 @@ use microphong::{
 };
 use microphong_sim::{
     bytes::StreamBytes,
+    compare::{
+        antialias::{self, Differences, Smoothing},
+        supersampled::Supersampled,
+    },
     convert::Options,
     look::{Look, Surface},
     mesh::Mesh,
@@ -26,9 +30,8 @@ use microphong_sim::{
 };
 use std::{iter::zip, thread};
 
-/// The picture that is compared, and how much larger the one is that it is compared with.
+/// The side of the picture that is compared.
 const SIDE: u32 = 240;
-const FINER: u32 = 8;
 
 fn smooth(shader: Shader) -> Style {
     Style { antialias: true, ..shader.into() }
@@ -39,38 +42,13 @@ fn load(name: &str) -> StreamBytes {
     scene::load(name).unwrap().stream.with_neighbours().unwrap()
 }
 
-fn channels(pixel: &Rgb888) -> [f64; 3] {
-    [pixel.r(), pixel.g(), pixel.b()].map(f64::from)
+/// A frame by Gouraud shading with smooth outlines and without, and means of many samples of it.
+fn smoothing(stream: Stream<'_>, number: u32) -> Smoothing {
+    let samples = Supersampled::new(stream, (SIDE, SIDE), number, false).unwrap();
+    antialias::compare(stream, &samples, Shader::GOURAUD, number, &|| ()).unwrap()
 }
 
-/// The mean colour of each pixel in a picture that is [`FINER`], and the largest difference of two colours in it.
-fn supersampled(stream: Stream<'_>, shader: Shader, number: u32) -> Vec<([f64; 3], f64)> {
-    let fine = SIDE * FINER;
-    let (pixels, _) = render::frame::<Rgb888>(stream, Size::new_equal(fine), shader, fine, number).unwrap();
-    let pixel = |x: u32, y: u32| channels(&pixels[(y * fine + x) as usize]);
-    let mean = |place: u32| {
-        let (x, y) = (place % SIDE * FINER, place / SIDE * FINER);
-        let samples = || (0..FINER * FINER).map(|k| pixel(x + k % FINER, y + k / FINER));
-        let mean = [0, 1, 2].map(|k| samples().map(|sample| sample[k]).sum::<f64>() / f64::from(FINER * FINER));
-        let bounds = |k: usize| samples().fold((f64::MAX, f64::MIN), |(low, high), sample| (low.min(sample[k]), high.max(sample[k])));
-        let spread = [0, 1, 2].map(bounds).into_iter().map(|(low, high)| high - low).fold(0.0, f64::max);
-        (mean, spread)
-    };
-    (0..SIDE * SIDE).map(mean).collect()
-}
-
-/// Root of the mean square of the largest error of a channel, in pixels that contain an edge, and in all others.
-fn errors(pixels: &[Rgb888], exact: &[([f64; 3], f64)]) -> [f64; 2] {
-    let error = |pixel: &Rgb888, mean: &[f64; 3]| channels(pixel).iter().zip(mean).map(|(a, b)| (a - b).abs()).fold(0.0, f64::max);
-    let rms = |on_edge: bool| {
-        let of = pixels.iter().zip(exact).filter(|(_, (_, spread))| (*spread > 24.0) == on_edge);
-        let squares: Vec<_> = of.map(|(pixel, (mean, _))| error(pixel, mean).powi(2)).collect();
-        (squares.iter().sum::<f64>() / squares.len().max(1) as f64).sqrt()
-    };
-    [true, false].map(rms)
-}
-
-/// In pixels that contain an edge, a smooth picture is nearer to the mean of 64 samples than a plain one and its error is below the limit
+/// In pixels that contain an edge, a smooth picture is nearer to the mean of 256 samples than a plain one and its error is below the limit
 /// of each scene. In all other pixels the error grows by at most 0.08 of 255.
 #[test]
 fn outlines_are_like_supersampled_ones() {
@@ -80,10 +58,8 @@ fn outlines_are_like_supersampled_ones() {
         let stream = load(name);
         let stream = stream.parse().unwrap();
         for number in [0, 13, 26].into_iter().take(frames) {
-            let exact = supersampled(stream, Shader::GOURAUD, number);
-            let draw = |style: Style| render::frame::<Rgb888>(stream, Size::new_equal(SIDE), style, SIDE, number).unwrap().0;
-            let ([plain, plain_elsewhere], [smooth, elsewhere]) =
-                (errors(&draw(Shader::GOURAUD.into()), &exact), errors(&draw(smooth(Shader::GOURAUD)), &exact));
+            let Smoothing { smooth, plain, .. } = smoothing(stream, number);
+            let [[plain, plain_elsewhere], [smooth, elsewhere]] = [plain, smooth].map(|of: Differences| [of.edges_rmse, of.elsewhere_rmse]);
             println!("{name:12} frame {number:2}: {plain:5.2} -> {smooth:5.2}, elsewhere {plain_elsewhere:4.2} -> {elsewhere:4.2}");
             assert!(smooth < most && smooth < 0.8 * plain, "{name}, frame {number}: {smooth}, in place of {plain}");
             assert!(elsewhere <= plain_elsewhere + 0.08, "{name}, frame {number}: {elsewhere}, in place of {plain_elsewhere}");
@@ -219,14 +195,12 @@ fn borders_of_colours_are_smooth() {
     let stream = stripes([[200, 30, 20], [230, 220, 200]]);
     assert_eq!([creases(&stream), creases(&stripes([[200; 3], [216, 200, 184]]))], [450, 0]);
     let stream = stream.parse().unwrap();
-    let fine = supersampled(stream, Shader::GOURAUD, 7);
-    let error = |style: Style| {
-        let (pixels, _) = render::frame::<Rgb888>(stream, Size::new_equal(SIDE), style, SIDE, 7).unwrap();
+    let Smoothing { means, pictures, .. } = smoothing(stream, 7);
+    let [smooth, jagged] = pictures.map(|pixels| {
         let squares =
-            pixels.iter().zip(&fine).flat_map(|(pixel, (mean, _))| zip(channels(pixel), *mean).map(|(one, other)| (one - other).powi(2)));
+            zip(&pixels, &means).flat_map(|(pixel, mean)| zip(pixel, mean.levels).map(|(one, other)| (f64::from(*one) - other).powi(2)));
         (squares.sum::<f64>() / (3 * pixels.len()) as f64).sqrt()
-    };
-    let [jagged, smooth] = [Shader::GOURAUD.into(), smooth(Shader::GOURAUD)].map(error);
+    });
     println!("jagged {jagged:.2} smooth {smooth:.2}");
     assert!(smooth < jagged / 2.0, "{smooth} {jagged}");
 }

@@ -3,17 +3,24 @@
 use crate::vertex_colours::parts;
 use embedded_graphics::prelude::Size;
 use microphong::{
-    format::ErrorBudget,
+    Light,
+    format::{Angle, ErrorBudget},
     renderer::check,
     stream::record::{Colour, HAS_TEXTURE, TRANSPARENCY_SHIFT, Texture, TextureCorners},
 };
 use microphong_sim::{
     bytes::StreamBytes,
-    compare::{Comparison, Reference, exponent::with_exponent},
+    compare::{
+        Comparison, Reference,
+        antialias::{self, Smoothing},
+        exponent::with_exponent,
+        supersampled::Supersampled,
+    },
     image, oracle,
-    render::{self, Format, Settings},
+    render::{self, Format, Settings, Style},
     scene,
     shader::Shader,
+    stress::records::Records,
 };
 use serde_json::Value;
 use std::{fs, path::Path, process::Output};
@@ -174,6 +181,66 @@ fn the_report_shows_choices() {
         assert_eq!(page.matches(&format!("title=\"{}", parts.join(", "))).count(), 1, "{shares}");
     }
     assert_eq!((page.matches("class=\"shares\"").count(), page.matches("class=\"ways\"").count()), (2, 1));
+}
+
+/// Smooth outlines are nearer to the means of samples than jagged ones, which is said with the place of the largest difference, also of a scene with several
+/// objects. The page shows both pictures, the means and the differences.
+#[test]
+fn smooth_outlines_are_measured() {
+    let directory = tempfile::tempdir().expect("scratch directory");
+    let arguments = ["torus", "board", "--antialias", "--size", "96x72", "--frame", "3"];
+    let found = objects(&succeeds(directory.path(), &[&arguments[..], &["--json"]].concat()));
+    let named: Vec<_> =
+        found.iter().map(|object| [&object["scene"], &object["shader"]].map(|name| name.as_str().expect("a name"))).collect();
+    assert_eq!(named, [["torus", "auto"], ["board", "auto"]], "the methods of the scenes");
+    for object in &found {
+        let figure = |picture: &str, figure: &str| object[picture][figure].as_f64().expect("a figure");
+        assert!(figure("smooth", "edges_rmse") < 0.7 * figure("plain", "edges_rmse"), "{object}");
+        assert!(figure("smooth", "max") > figure("smooth", "edges_rmse") && figure("plain", "max") <= 255.0, "{object}");
+        let [x, y] = [0, 1].map(|k| object["smooth"]["at"][k].as_u64().expect("a place"));
+        assert!(x < 96 && y < 72 && object["pixels"] == 96 * 72, "{object}");
+        assert!((100..3_000).contains(&object["edge_pixels"].as_u64().expect("a count")), "{object}");
+    }
+    let text = succeeds(directory.path(), &[&arguments[..], &["--shader", "flat,gouraud", "--report", "page"]].concat());
+    assert!(text.starts_with("torus: 96x72; differences from means of 16x16 samples") && text.lines().count() == 9, "{text}");
+    let page = fs::read_to_string(directory.path().join("page/index.html")).expect("text");
+    assert_eq!((page.matches("<img ").count(), page.matches(" alt=\"").count()), (2 * 2 * 4, 2 * 2 * 4));
+    let among_all = objects(&succeeds(directory.path(), &["sphere-40", "--antialias", "--size", "40x30", "--shader", "all", "--json"]));
+    assert!(
+        among_all.len() == Shader::ALL.len() && among_all.iter().any(|object| object["smooth"].is_null() && object["reason"].is_string())
+    );
+}
+
+/// The means are those of pictures: in pixels without an edge plain pictures differ from them by little more than rounding, whatever the scene has.
+#[test]
+fn means_of_samples_know_all_of_a_scene() {
+    let load = |name: &str| scene::load(name).expect("a built-in scene").stream;
+    let degrees = |degrees: f32| Angle::from_num(degrees / 360.0);
+    let cone = Light::near([1.5, 2.0, 2.0], [1; 3]).and_then(|light| light.with_range(6));
+    let cone = cone.and_then(|light| light.with_cone([-3, -4, -4], degrees(10.0), degrees(20.0))).expect("a light");
+    let sky = Light::hemisphere([0, 1, 0], [0.8, 0.8, 1.0], [0.3, 0.2, 0.1]).expect("lights");
+    let scenes = [
+        ("lights", load("sphere-690"), 0, 1.0),
+        ("a near light", load("sphere-40"), 0, 1.0),
+        ("a cone", load("teapot").with_lights(&[cone]).expect("a light"), 0, 1.0),
+        ("a sky", load("teapot").with_lights(&sky).expect("lights"), 5, 1.0),
+        ("colours", load("fox"), 0, 1.0),
+        ("objects", load("board"), 13, 1.0),
+        ("objects that move", Records { labels: Vec::new(), ..parts("gauges") }.written().expect("a stream"), 20, 1.0),
+        ("glass", glass(9), 0, 1.0),
+        ("holes", pierced(1), 0, 1.0),
+    ];
+    for (kind, stream, frame, most) in scenes {
+        let stream = stream.without_outlines();
+        let stream = stream.parse().expect("a stream");
+        for perspective_correct in [false, true] {
+            let samples = Supersampled::new(stream, SEEN_THROUGH, frame, perspective_correct).expect("a frame");
+            let style = Style { perspective_correct, ..Shader::PHONG.into() };
+            let Smoothing { edges, smooth, plain, .. } = antialias::compare(stream, &samples, style, frame, &|| ()).expect("a comparison");
+            println!("{kind:18} {edges:5} edges: {smooth:?} {plain:?}");
+            assert!(plain.elsewhere_rmse < most && edges > 50, "{kind}: {plain:?}, {edges}");
+        }
+    }
 }
 
 /// A coloured metal is walked in one channel, other materials in three: whichever it is, that is what errors are measured in.

@@ -3,6 +3,7 @@
 //! Two errors add up in a picture: the method's error, because it approximates, and the error of its arithmetic, which rounds. The oracle draws each
 //! method in f64, so that the two can be separated.
 
+pub mod antialias;
 pub mod document;
 mod edges;
 pub mod exponent;
@@ -11,6 +12,7 @@ pub mod level;
 pub mod operations;
 pub mod page;
 mod samples;
+pub mod supersampled;
 
 use anyhow::{Context, Result, ensure};
 use edges::Edges;

@@ -2,6 +2,7 @@
 
 use super::{
     Levels,
+    placed::{Lights, Space},
     scanline::lerp,
     scene::{Light, Material, Place, direction},
     texture::Texture,
@@ -9,12 +10,9 @@ use super::{
 use embedded_graphics_core::geometry::Size;
 use microphong::{
     Stream,
-    format::{DEPTH, Gain, NORMAL_LENGTH, ROTATION, SUBPIXEL, UNIT},
+    format::{DEPTH, Gain, NORMAL_LENGTH, SUBPIXEL, UNIT},
     geometry::{lens::Lens, model_view::ModelView, projection::View},
-    stream::{
-        MeshColours, record,
-        record::{EYE_SPACE, PERSPECTIVE, POINT, SKY, VIEWER_LOCAL},
-    },
+    stream::{MeshColours, record},
 };
 use microphong_models::{
     levels,
@@ -86,12 +84,12 @@ pub(super) struct SurfacePoint {
 }
 
 /// Converts fixed-point numbers of a stream.
-fn real<T: Into<f64>, const N: usize>(v: [T; N], bits: u32) -> [f64; N] {
+pub(super) fn real<T: Into<f64>, const N: usize>(v: [T; N], bits: u32) -> [f64; N] {
     v.map(|c| c.into() / f64::from(bits).exp2())
 }
 
 /// Reflectance or light.
-fn gain(colour: [Gain; 3]) -> V3 {
+pub(super) fn gain(colour: [Gain; 3]) -> V3 {
     colour.map(f64::from)
 }
 
@@ -103,31 +101,19 @@ impl Frame {
     #[must_use]
     pub fn new(stream: Stream<'_>, size: (u32, u32), number: u32) -> Self {
         let camera = &stream.header.camera;
-        let pose = ModelView::new(camera, number);
-        let view = View::new(&Lens::new(camera, Size::new(size.0, size.1)), &pose);
-        let [right, up, away] = pose.rotation.map(|row| real(row, ROTATION));
-        let to_object = |v: V3| add(add(scale(right, v[0]), scale(up, v[1])), scale(away, v[2]));
-        let translation = real(pose.translation, UNIT);
-        let towards = direction(scale(away, -1.0));
-        let local = camera.viewer == VIEWER_LOCAL && camera.projection == PERSPECTIVE;
-        let viewer = if local { Place::Near(to_object(scale(translation, -1.0))) } else { Place::Far(towards) };
-        let lights = stream.lights.iter().map(|light| {
-            let vector = real(light.vector, UNIT);
-            let place = match (light.kind, light.space) {
-                (POINT, EYE_SPACE) => Place::Near(to_object(sub(vector, translation))),
-                (POINT, _) => Place::Near(vector),
-                (_, EYE_SPACE) => Place::Far(direction(to_object(vector))),
-                _ => Place::Far(direction(vector)),
-            };
-            let axis = real(light.axis, UNIT);
-            let axis = if light.space == EYE_SPACE { to_object(axis) } else { axis };
-            Light {
-                is_sky: light.kind == SKY,
-                range: (light.range > 0).then(|| light.range().to_num()),
-                cone: (light.axis != [0; 3]).then(|| (direction(axis), real(light.cone, UNIT))),
-                ..Light::even(place, gain(light.colour()))
-            }
-        });
+        let model_view = ModelView::new(camera, number);
+        let lens = Lens::new(camera, Size::new(size.0, size.1));
+        let project = |eye| {
+            let ([x, y, depth], inside) = lens.project(eye);
+            inside.then(|| (real([x, y], SUBPIXEL), f64::from(depth) / f64::from(DEPTH).exp2()))
+        };
+        let facets = facets(stream, levels::drawn(&stream, Size::new(size.0, size.1)), &View::new(&lens, &model_view), &project);
+        let lights = Lights { camera, lights: stream.lights, eye: Space::eye(&model_view), world: Space::SAME };
+        Self::lit_by(stream, size, &lights, facets)
+    }
+
+    /// The facets of one object under lights.
+    pub(super) fn lit_by(stream: Stream<'_>, size: (u32, u32), lights: &Lights<'_>, facets: Vec<Facet>) -> Self {
         let around = gain(stream.header.ambient());
         let materials = stream.materials.iter().map(|material| {
             let ambient = gain(material.ambient());
@@ -138,17 +124,13 @@ impl Frame {
                 exponent: material.exponent.into(),
             }
         });
-        let facets = levels::drawn(&stream, Size::new(size.0, size.1)).flat_map(|mesh| {
-            let view = &view;
-            let triangles = stream.triangles_of(mesh).unwrap_or_default();
-            (mesh.first_triangle..).zip(triangles).filter_map(move |(id, triangle)| facet(stream, mesh, triangle, id, view))
-        });
+        let [right, up, away] = lights.eye.axes;
         Self {
             size,
-            facets: facets.collect(),
-            lights: lights.collect(),
-            viewer,
-            axes: [direction(right), direction(up), towards],
+            facets,
+            lights: lights.lights.iter().map(|light| lights.light(light)).collect(),
+            viewer: lights.viewer(),
+            axes: [direction(right), direction(up), direction(scale(away, -1.0))],
             materials: materials.collect(),
             background: [stream.header.background, stream.header.background_bottom].map(|colour| colour.map(f64::from)),
             is_gray: false,
@@ -179,11 +161,15 @@ impl Frame {
     /// the triangle of the screen in the same way. With parallel rays both points are equal.
     #[must_use]
     pub fn perspective_correct(stream: Stream<'_>, size: (u32, u32), number: u32) -> Self {
-        let mut frame = Self::new(stream, size, number);
+        Self::new(stream, size, number).corrected(stream)
+    }
+
+    /// This frame of a stream in perspective.
+    pub(super) fn corrected(mut self, stream: Stream<'_>) -> Self {
         if stream.is_perspective() {
-            frame.facets.iter_mut().for_each(|facet| facet.shares = facet.inv_depth);
+            self.facets.iter_mut().for_each(|facet| facet.shares = facet.inv_depth);
         }
-        frame
+        self
     }
 
     /// Whether lights and viewer are all infinitely far: N·L and N·H then depend on the normal alone.
@@ -213,23 +199,45 @@ fn albedos(stream: Stream<'_>, mesh: &record::Mesh, id: u32) -> Option<[V3; 3]> 
     Some(albedos)
 }
 
+/// The place in pixels, and the inverse depth, of a point in the integers of eye space; `None` if its triangles have to be clipped.
+pub(super) type Project<'p> = dyn Fn([i32; 3]) -> Option<([f64; 2], f64)> + 'p;
+
+/// The triangles of meshes as facets on the screen.
+pub(super) fn facets<'a>(
+    stream: Stream<'a>,
+    meshes: impl Iterator<Item = &'a record::Mesh>,
+    view: &View,
+    project: &Project<'_>,
+) -> Vec<Facet> {
+    let of = |mesh: &'a record::Mesh| {
+        let triangles = stream.triangles_of(mesh).unwrap_or_default();
+        (mesh.first_triangle..).zip(triangles).filter_map(move |(id, triangle)| facet(stream, mesh, triangle, id, view, project))
+    };
+    meshes.flat_map(of).collect()
+}
+
 /// A record as a facet on the screen; `None` if it shows its back, is empty there, or has to be clipped.
-fn facet(stream: Stream<'_>, mesh: &record::Mesh, triangle: &record::Triangle, id: u32, view: &View) -> Option<Facet> {
+fn facet(
+    stream: Stream<'_>,
+    mesh: &record::Mesh,
+    triangle: &record::Triangle,
+    id: u32,
+    view: &View,
+    project: &Project<'_>,
+) -> Option<Facet> {
     let vertices = CLOCKWISE.map(|corner| mesh.first_vertex as usize + usize::from(triangle.corners[corner]));
     let mut corners = [record::Vertex::ZERO; 3];
-    let mut places = [[0; 3]; 3];
+    let (mut screen, mut inv_depth) = ([[0.0; 2]; 3], [0.0; 3]);
     for k in 0..3 {
         corners[k] = *stream.vertices.get(vertices[k])?;
-        let (place, inside) = view.lens.project(view.to_eye(corners[k].position));
-        places[k] = inside.then_some(place)?;
+        (screen[k], inv_depth[k]) = project(view.to_eye(corners[k].position))?;
     }
-    let [p, q, r] = places.map(|[x, y, _]| [i64::from(x), i64::from(y)]);
-    if (q[0] - p[0]) * (r[1] - p[1]) - (q[1] - p[1]) * (r[0] - p[0]) <= 0 {
+    let [p, q, r] = screen;
+    if (q[0] - p[0]) * (r[1] - p[1]) - (q[1] - p[1]) * (r[0] - p[0]) <= 0.0 {
         return None;
     }
-    let inv_depth = places.map(|[_, _, depth]| f64::from(depth) / f64::from(DEPTH).exp2());
     Some(Facet {
-        screen: places.map(|[x, y, _]| real([x, y], SUBPIXEL)),
+        screen,
         inv_depth,
         shares: [1.0; 3],
         vertices,

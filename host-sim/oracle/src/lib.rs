@@ -9,6 +9,7 @@ mod frame;
 mod light;
 mod method;
 pub mod papers;
+mod placed;
 mod poly;
 mod scanline;
 mod scene;

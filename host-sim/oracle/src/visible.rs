@@ -1,6 +1,7 @@
 //! Finds the triangles that each pixel shows.
 
 use super::frame::{Facet, Frame};
+use std::ops::Range;
 
 /// Inverse depth that 16 bits, truncated, cannot be relied on to tell apart.
 const SLACK: f64 = 2.0 / 65_536.0;
@@ -123,20 +124,33 @@ impl Facet {
 
     /// The pixels whose centres lie inside, or on a left or top edge.
     pub fn pixels(&self, size: (u32, u32)) -> impl Iterator<Item = [u32; 2]> + use<> {
+        self.samples(1, [0..size.0, 0..size.1])
+    }
+
+    /// The samples that lie inside, or on a left or top edge, within a range of columns and of rows, if each side of a pixel is divided into `parts`, which
+    /// is a power of two, and each of these parts has a sample in its middle.
+    pub fn samples(&self, parts: u32, [columns, rows]: [Range<u32>; 2]) -> impl Iterator<Item = [u32; 2]> + use<> {
         let corners = self.screen.map(|corner| corner.map(|c| (c * STEPS).round() as i64));
-        let range = |k: usize, end: u32| {
+        let range = |k: usize, limits: Range<u32>| {
             let (low, high) = self.screen.iter().fold((f64::MAX, f64::MIN), |(low, high), c| (low.min(c[k]), high.max(c[k])));
-            // A cast saturates: what lies outside the picture is cut off.
-            (low - 1.0) as u32..((high + 1.0) as u32).min(end)
+            // A cast saturates: what lies outside is cut off.
+            let place = |c: f64| (c * f64::from(parts)) as u32;
+            place(low - 1.0).max(limits.start)..place(high + 1.0).min(limits.end)
         };
-        let (columns, rows) = (range(0, size.0), range(1, size.1));
-        rows.flat_map(move |y| columns.clone().map(move |x| [x, y])).filter(move |pixel| covers(&corners, *pixel))
+        let (columns, rows) = (range(0, columns), range(1, rows));
+        rows.flat_map(move |y| columns.clone().map(move |x| [x, y])).filter(move |sample| covers(&corners, parts, *sample))
+    }
+
+    /// Whether a point of the screen within the edges lies in a hole of the texture.
+    #[must_use]
+    pub fn has_hole(&self, p: [f64; 2]) -> bool {
+        !self.covers(p).is_exact()
     }
 }
 
-/// Whether the centre of `pixel` lies on the right of all three edges, or on one that takes it.
-fn covers(corners: &[[i64; 2]; 3], pixel: [u32; 2]) -> bool {
-    let [x, y] = pixel.map(|c| (f64::from(c) * STEPS + STEPS / 2.0) as i64);
+/// Whether a sample lies on the right of all three edges, or on one that takes it.
+fn covers(corners: &[[i64; 2]; 3], parts: u32, sample: [u32; 2]) -> bool {
+    let [x, y] = sample.map(|c| ((f64::from(c) + 0.5) * STEPS / f64::from(parts)) as i64);
     (0..3).all(|k| {
         let (a, b) = (corners[k], corners[(k + 1) % 3]);
         let (dx, dy) = (b[0] - a[0], b[1] - a[1]);

@@ -1,11 +1,12 @@
 //! The report: one HTML file with everything in it.
 
+mod antialias;
 mod chart;
 mod picture;
 mod scale;
 mod table;
 
-use super::{Comparison, Reference};
+use super::{Comparison, Reference, Window, antialias::Smoothing};
 use crate::document::{
     choices::{key, shares},
     document,
@@ -22,9 +23,18 @@ use std::{
 
 const STYLE: &str = include_str!("style.css");
 
+/// What a page that compares shading methods begins with.
+pub const SHADING: &str = "Each method's integer picture against Phong shading in 64-bit floating point: the normal interpolated, normalised and \
+    lit at every pixel. Errors are in LSB, steps of which 255 are full level, before an output format rounds.";
+
+/// What a page that judges smooth outlines begins with.
+pub const OUTLINES: &str = "Each method's picture with smooth outlines, and its plain picture, against means of 16x16 samples per pixel of the same \
+    method in 64-bit floating point. Differences are in LSB, steps of which 255 are full level, in 8 bits per channel.";
+
 /// A page under construction.
 #[derive(Debug)]
 pub struct Page {
+    about: &'static str,
     output: Output,
     scenes: Vec<(String, Markup)>,
 }
@@ -33,13 +43,13 @@ pub struct Page {
 pub type Outcome<'a> = (Shader, Result<&'a Comparison, &'a str>);
 
 impl Page {
-    /// Starts `index.html` in `directory`, which is made if it is not there.
+    /// Starts `index.html` in `directory`, which is made if it is not there. The page begins with the text `about`.
     ///
     /// # Errors
     /// When the directory cannot be made or written.
-    pub fn create(directory: &Path) -> Result<Self> {
+    pub fn create(directory: &Path, about: &'static str) -> Result<Self> {
         fs::create_dir_all(directory).with_context(|| format!("cannot create the directory {}", directory.display()))?;
-        Ok(Self { output: Output::create(&directory.join("index.html"))?, scenes: Vec::new() })
+        Ok(Self { about, output: Output::create(&directory.join("index.html"))?, scenes: Vec::new() })
     }
 
     /// Adds a scene and its methods.
@@ -52,25 +62,32 @@ impl Page {
         Ok(())
     }
 
+    /// Adds a scene and how smooth its outlines are by some methods.
+    ///
+    /// # Errors
+    /// When a picture cannot be encoded.
+    pub fn add_outlines(&mut self, name: &str, size: (u32, u32), smoothings: &[(Shader, Result<&Smoothing, &str>)]) -> Result<()> {
+        let section = antialias::section(self.scenes.len(), name, size, smoothings)?;
+        self.scenes.push((name.to_owned(), section));
+        Ok(())
+    }
+
     /// Writes the page and returns its path.
     ///
     /// # Errors
     /// When the page cannot be written; no part of it stays.
     pub fn finish(mut self) -> Result<PathBuf> {
         let path = self.output.path().to_owned();
-        let page = page(&self.scenes).into_string();
+        let page = page(self.about, &self.scenes).into_string();
         self.output.write_all(page.as_bytes()).with_context(|| format!("cannot write {}", path.display()))?;
         self.output.finish()?;
         Ok(path)
     }
 }
 
-fn page(scenes: &[(String, Markup)]) -> Markup {
+fn page(about: &str, scenes: &[(String, Markup)]) -> Markup {
     let head = html! {
-        p {
-            "Each method's integer picture against Phong shading in 64-bit floating point: the normal interpolated, normalised and "
-            "lit at every pixel. Errors are in LSB, steps of which 255 are full level, before an output format rounds."
-        }
+        p { (about) }
         @if scenes.len() > 1 {
             nav aria-label="Scenes" { ul { @for (index, (name, _)) in scenes.iter().enumerate() { li { a href={ "#scene-" (index) } { (name) } } } } }
         }
@@ -121,14 +138,7 @@ fn entry(anchor: &str, scene: &str, reference: &Reference<'_>, comparison: &Comp
     let rendering = picture::rgb(window, &drawn)?;
     let amplified = picture::amplified(window, &drawn, &window.cut(&reference.picture(), width))?;
     let signed = picture::signed(window, &window.cut(&comparison.errors, width))?;
-    let panel = |class: &str, source: &str, alt: &str, caption: &str| {
-        html! {
-            figure {
-                img class=(class) src=(source) width=(window.width()) height=(window.height()) alt=(alt);
-                figcaption { (caption) }
-            }
-        }
-    };
+    let panel = |class: &str, source: &str, alt: &str, caption: &str| panel(window, class, source, alt, caption);
     let total = comparison.total;
     Ok(html! {
         article.method id=(anchor) {
@@ -147,6 +157,16 @@ fn entry(anchor: &str, scene: &str, reference: &Reference<'_>, comparison: &Comp
             }
         }
     })
+}
+
+/// A picture and what it shows.
+fn panel(window: &Window, class: &str, source: &str, alt: &str, caption: &str) -> Markup {
+    html! {
+        figure {
+            img class=(class) src=(source) width=(window.width()) height=(window.height()) alt=(alt);
+            figcaption { (caption) }
+        }
+    }
 }
 
 /// A number with as many places as mean something.

@@ -1,5 +1,7 @@
 //! `microphong compare`.
 
+mod antialias;
+
 use super::{
     Outcome,
     mesh_options::MeshOptions,
@@ -11,7 +13,12 @@ use microphong::{format::ErrorBudget, renderer::check};
 use microphong_sim::{
     bytes::StreamBytes,
     choices::Choices,
-    compare::{Comparison, Reference, exponent::with_exponent, operations::Operations, page::Page},
+    compare::{
+        Comparison, Reference,
+        exponent::with_exponent,
+        operations::Operations,
+        page::{self, Page},
+    },
     scene::Scene,
     shader::Shader,
 };
@@ -28,9 +35,14 @@ pub(crate) struct Arguments {
     /// .tri, .obj, .stl, .ply, .gltf, .glb, .3mf and .toml files, names of built-in scenes, or `all` for every built-in scene.
     #[arg(required = true, value_name = "SCENE")]
     scenes: Vec<String>,
-    /// Shading methods by name, separated by commas, or all.
-    #[arg(long, default_value = "all", value_name = "S,...", value_parser = parse::SeveralShaders)]
-    shader: Several<Shader>,
+    /// Shading methods by name, separated by commas, or all. The default is all; with --antialias it is the method of the scene, because outlines
+    /// hardly depend on it.
+    #[arg(long, value_name = "S,...", value_parser = parse::SeveralShaders)]
+    shader: Option<Several<Shader>>,
+    /// Measure smooth outlines instead of shading: compare each method's picture with smooth outlines, and its plain picture, with means of 16x16 samples
+    /// per pixel of the same method in 64-bit floating point. This includes scenes of several objects.
+    #[arg(long)]
+    antialias: bool,
     /// Error budget of auto and auto-linear: the largest difference of a pixel from Phong shading, in 1/255, from 0.5 to 16. The default is the
     /// budget of the scene. If it has none, the budget is 1, as on displays with 8 bits a channel.
     #[arg(long, value_name = "LSB", value_parser = parse::budget)]
@@ -62,6 +74,7 @@ Examples:
   microphong compare teapot
   microphong compare sphere-168 torus --override-exponent 50 --report comparison
   microphong compare all --shader six-point,renq --json
+  microphong compare board --antialias --size 240x240 --frame 13
 
 Columns:
   error       error of the integer picture: largest, 99th percentile, root mean square
@@ -72,7 +85,12 @@ Columns:
   edge, mach  largest jump of the light level, and of its slope (LSB per pixel), across an edge between two
               triangles, in floating point; for auto, with the methods that it chooses for the two
   + * load    additions, multiplications and table look-ups per pixel, without those for perspective
-  set-up      operations per triangle, and per row if there are any";
+  set-up      operations per triangle, and per row if there are any
+
+Columns with --antialias, for the smooth picture and then for the plain one, of 8 bits per channel:
+  edges       root mean square of the differences in pixels that contain an edge: their samples differ by more than 24 LSB
+  else        the same in all other pixels; there smooth outlines should change nothing
+  max, at     the largest difference, and its column and row";
 
 /// What is known of one method on one scene; all figures are null if it could not be drawn, and `reason` says why.
 #[derive(Serialize)]
@@ -113,8 +131,7 @@ struct Row {
 
 pub(crate) fn run(arguments: &Arguments) -> Result<Outcome> {
     let scenes = chosen(arguments)?;
-    let Several { values: shaders, all } = &arguments.shader;
-    if !all {
+    if let Some(Several { values: shaders, all: false }) = &arguments.shader {
         for scene in &scenes {
             let stream = scene.stream.parse().with_context(|| scene.name.clone())?;
             shaders
@@ -123,9 +140,23 @@ pub(crate) fn run(arguments: &Arguments) -> Result<Outcome> {
                 .with_context(|| scene.name.clone())?;
         }
     }
-    let mut page = arguments.report.as_deref().map(Page::create).transpose()?;
+    let about = if arguments.antialias { page::OUTLINES } else { page::SHADING };
+    let page = arguments.report.as_deref().map(|directory| Page::create(directory, about)).transpose()?;
+    let page = if arguments.antialias { antialias::compare(arguments, &scenes, page)? } else { shading(arguments, &scenes, page)? };
+    if let Some(page) = page {
+        let path = page.finish()?;
+        if !arguments.json {
+            report::line(&format!("report: {}", path.display()))?;
+        }
+    }
+    Ok(Outcome::Done)
+}
+
+/// Measures shading; returns the page with the results.
+fn shading(arguments: &Arguments, scenes: &[Scene], mut page: Option<Page>) -> Result<Option<Page>> {
+    let Several { values: shaders, all } = &arguments.shader.clone().unwrap_or_else(|| Several { values: Shader::ALL.to_vec(), all: true });
     let bar = report::progress((scenes.len() * shaders.len()) as u64, "comparing methods");
-    for scene in &scenes {
+    for scene in scenes {
         let stream = scene.stream.parse().with_context(|| scene.name.clone())?;
         let size = arguments.size.unwrap_or(scene.size);
         let reference = if arguments.perspective_correct { Reference::perspective_correct } else { Reference::new };
@@ -150,13 +181,7 @@ pub(crate) fn run(arguments: &Arguments) -> Result<Outcome> {
         }
     }
     bar.finish_and_clear();
-    if let Some(page) = page {
-        let path = page.finish()?;
-        if !arguments.json {
-            report::line(&format!("report: {}", path.display()))?;
-        }
-    }
-    Ok(Outcome::Done)
+    Ok(page)
 }
 
 /// The scenes with the exponent that was asked for.
