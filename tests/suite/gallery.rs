@@ -109,7 +109,7 @@ const LIMITS: [(Shader, f64); 3] = [(Shader::GOURAUD, 1.15), (Shader::PHONG, 1.6
 #[test]
 fn costs_of_colours_at_corners_keep_to_their_limits() {
     let processor = Processor::CortexM3;
-    let [plain, coloured] = [Program::Plain, Program::VERTEX_COLOURS].map(|program| Bench::of_program(&[processor], program).unwrap());
+    let [plain, coloured] = [Program::PLAIN, Program::VERTEX_COLOURS].map(|program| Bench::of_program(&[processor], program).unwrap());
     let wanted = LIMITS.map(|(shader, _)| (processor, shader));
     println!("instructions in one colour by the program with colours at corners, and by the one without; with colours: ratios, limit");
     for (name, lamps) in LOW_POLY.into_iter().flat_map(|name| [(name, 2), (name, 1)]) {

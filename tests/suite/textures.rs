@@ -87,7 +87,7 @@ const SLACK: f64 = 1.0;
 fn costs_of_textures_are_those_of_the_guide() {
     let shaders = [Shader::FLAT, Shader::GOURAUD, Shader::PHONG, Shader::AUTO];
     let processor = Processor::CortexM3;
-    let [plain, with] = [Program::Plain, Program::TEXTURES].map(|program| Bench::of_program(&[processor], program).unwrap());
+    let [plain, with] = [Program::PLAIN, Program::TEXTURES].map(|program| Bench::of_program(&[processor], program).unwrap());
     let wanted = shaders.map(|shader| (processor, shader));
     let scene = scene::load("sphere-374").unwrap();
     let colours: Vec<_> = (0..=40).map(|k| [6 * k, 255 - 5 * k, 37 * (k % 7)]).collect();

@@ -270,7 +270,7 @@ const LIMITS: [(Shader, [f64; 6]); 4] = [
 #[test]
 fn costs_of_transparency_keep_to_their_limits() {
     let processor = Processor::CortexM3;
-    let programs = [Program::Plain, Program::TRANSPARENCY, Program::TEXTURES, Program::HOLES];
+    let programs = [Program::PLAIN, Program::TRANSPARENCY, Program::TEXTURES, Program::HOLES];
     let [plain, glass, textures, holes] = programs.map(|program| Bench::of_program(&[processor], program).unwrap());
     let wanted = LIMITS.map(|(shader, _)| (processor, shader));
     let teapot = scene::load("teapot").unwrap();

@@ -173,15 +173,21 @@ pub fn measure(entries: &[Entry], tick: &(dyn Fn() + Sync)) -> Result<Vec<Entry>
 /// When a scene is unknown or a board fails.
 pub fn measure_with(entries: &[Entry], load: &dyn Fn(&str) -> Result<Scene>, tick: &(dyn Fn() + Sync)) -> Result<Vec<Entry>> {
     let mut measured = entries.to_vec();
-    for program in distinct(entries.iter().map(|entry| entry.style.program)) {
-        let drawn = |entry: &&Entry| entry.style.program == program;
-        let bench = Bench::of_program(&distinct(entries.iter().filter(drawn).map(|entry| entry.processor)), program)?;
-        for (name, style) in distinct(entries.iter().filter(drawn).map(|entry| (&entry.scene, entry.style.name))) {
-            let is_it = |entry: &Entry| (&entry.scene, entry.style.name) == (name, style);
+    let mut frames = Vec::new();
+    for (name, style) in distinct(entries.iter().map(|entry| (&entry.scene, entry.style.name))) {
+        let style = BoardStyle::named(style).context("a style that was not there")?;
+        let scene = style.of(&load(name)?)?;
+        frames.push((style.program_for(&scene.stream)?, name, style, scene));
+    }
+    for program in distinct(frames.iter().map(|&(program, ..)| program)) {
+        let drawn: Vec<_> = frames.iter().filter(|(of, ..)| *of == program).collect();
+        let is_drawn = |entry: &&Entry| drawn.iter().any(|(_, name, style, _)| (&entry.scene, entry.style) == (*name, *style));
+        let bench = Bench::of_program(&distinct(entries.iter().filter(is_drawn).map(|entry| entry.processor)), program)?;
+        for (_, name, style, scene) in drawn {
+            let is_it = |entry: &Entry| (&entry.scene, entry.style) == (*name, *style);
             let (places, wanted): (Vec<_>, Vec<_>) =
                 (0..).zip(entries).filter(|(_, entry)| is_it(entry)).map(|(place, entry)| (place, (entry.processor, entry.shader))).unzip();
-            let style = BoardStyle::named(style).context("a style that was not there")?;
-            let now = bench.count(&style.of(&load(name)?)?, &wanted, tick)?;
+            let now = bench.count(scene, &wanted, tick)?;
             for (place, now) in places.into_iter().zip(&now) {
                 let entry: &mut Entry = measured.get_mut::<usize>(place).context("a line that was not there")?;
                 *entry = entry.renewed(now);

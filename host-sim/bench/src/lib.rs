@@ -63,7 +63,7 @@ impl Bench {
     /// # Errors
     /// When a firmware does not compile.
     pub fn new(processors: &[Processor]) -> Result<Self> {
-        Self::of_program(processors, Program::Plain)
+        Self::of_program(processors, Program::PLAIN)
     }
 
     /// Builds the firmware of boards that draws smooth outlines.
@@ -72,7 +72,7 @@ impl Bench {
     /// When a board has no memory for them, a processor is no board, or a firmware does not compile.
     pub fn antialiased(processors: &[Processor]) -> Result<Self> {
         ensure!(!processors.contains(&Processor::X86_64), "smooth outlines on this computer are counted by --styles");
-        Ok(Self { antialias: true, ..Self::of_program(processors, Program::Antialias)? })
+        Ok(Self { antialias: true, ..Self::of_program(processors, Program::ANTIALIAS)? })
     }
 
     /// Builds a program of boards.

@@ -4,7 +4,7 @@
 use crate::{Processor, callgrind::Counters};
 use anyhow::{Context, Result, ensure};
 use embedded_graphics_core::geometry::Size;
-use microphong::{Outlines, Skips, pixel::Rgb565Be};
+use microphong::{Outlines, Skips, pixel::Rgb565Be, renderer::check};
 use microphong_models::scene::Scene;
 use microphong_render::{
     render::{self, Format, Style},
@@ -52,8 +52,10 @@ pub struct StyleCosts {
     pub pixels: u32,
     /// Names of the styles, the plain one first.
     pub styles: Vec<String>,
-    /// Instructions of the frame in each of them, on this computer with clearing; `None` where the method cannot draw it.
+    /// Instructions of the frame in each of them, on this computer with clearing; `None` where it cannot be drawn.
     pub instructions: Vec<Option<u64>>,
+    /// Why the frame cannot be drawn in a style; `None` where it can.
+    pub obstacles: Vec<Option<String>>,
 }
 
 /// Counts frame 0 of `scene` by `shaders`, each in its `styles`, the plain one first; `tick` is called for each method.
@@ -76,6 +78,8 @@ pub fn measure(
             let (stream, size) = (scene.stream.clone(), [width, height]);
             counters.count(&Case { stream, size, frame: 0, style, format: Format::Rgb565, band_rows: height })
         };
+        let obstacle = |style: &Style| check(&stream, shader.facts(), style.perspective_correct).err().map(|error| error.to_string());
+        let obstacles = styles.iter().map(obstacle).collect();
         let instructions = styles.into_iter().map(count).collect::<Result<_>>()?;
         tick();
         Ok(StyleCosts {
@@ -85,6 +89,7 @@ pub fn measure(
             pixels: stats.pixels,
             styles: names,
             instructions,
+            obstacles,
         })
     });
     costs.collect()

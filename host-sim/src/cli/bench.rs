@@ -7,8 +7,7 @@ use super::{
     report, scenes,
 };
 use anyhow::Result;
-use embedded_graphics_core::pixelcolor::Rgb565;
-use microphong::{features::Feature, format::ErrorBudget, pixel::Channels, renderer::check};
+use microphong::{format::ErrorBudget, renderer::check};
 use microphong_sim::{
     bench::{
         Bench, Measurement, PICO_HZ, Processor, Timing, baseline, board_styles,
@@ -62,8 +61,8 @@ pub(crate) struct Arguments {
     #[arg(long)]
     peers: bool,
     /// Count frames in several styles. On this computer: with antialiasing, with lines along outlines, and with interpolation in perspective. On
-    /// mps2-an385 and mps2-an386 also: under near lights with a range or a cone, under 2 to 8 lights and the light of the sky, with gamma, and in
-    /// each pixel format.
+    /// boards also: under near lights with a range or a cone, under 2 to 8 lights and the light of the sky, with colours at corners, textures, holes and
+    /// glass, with gamma, and in each pixel format. Styles that a board, a scene or a method cannot have are left out, with the reason.
     #[arg(long, conflicts_with_all = ["antialias", "report", "peers"])]
     styles: bool,
     /// Count how many instructions are saved by skipping invisible work, for each kind of work, on this computer.
@@ -179,9 +178,13 @@ pub(crate) fn run(arguments: &Arguments) -> Result<Outcome> {
     let steps = scenes.iter().map(|(_, wanted)| wanted.len() + others.len() * again(wanted).len()).sum::<usize>();
     let steps = steps + 1 + common.len() * with_peers.len();
     let bar = report::progress(steps as u64, "counting instructions");
-    let bench = match arguments.antialias {
-        true => Bench::antialiased(&boards.values)?,
-        false => Bench::of_program(&boards.values, program(&scenes))?,
+    let bench = if arguments.antialias {
+        Bench::antialiased(&boards.values)?
+    } else {
+        let needed = |program: board_styles::Program, (scene, _): &(Scene, _)| {
+            anyhow::Ok(program.and(board_styles::Program::needed_by(&scene.stream.parse()?)))
+        };
+        Bench::of_program(&boards.values, scenes.iter().try_fold(board_styles::Program::PLAIN, needed)?)?
     };
     bar.inc(1);
     let mut all = Vec::new();
@@ -215,32 +218,9 @@ pub(crate) fn run(arguments: &Arguments) -> Result<Outcome> {
     Ok(Outcome::Done)
 }
 
-/// The least program of boards that has what `scenes` need.
-fn program(scenes: &[(Scene, Vec<(Processor, Shader)>)]) -> board_styles::Program {
-    let needs = |feature: Feature| {
-        let channels = &Channels::of::<Rgb565>();
-        scenes.iter().any(|(scene, _)| scene.stream.parse().is_ok_and(|stream| feature.is_needed_by(&stream, channels)))
-    };
-    match () {
-        () if needs(Feature::LightShapes) => board_styles::Program::Antialias,
-        () if needs(Feature::Textures) => board_styles::Program::TEXTURES,
-        () if needs(Feature::VertexColours) => board_styles::Program::VERTEX_COLOURS,
-        () => board_styles::Program::Plain,
-    }
-}
-
 /// Counts `scenes` by the `wanted` methods in the styles of each board.
 fn on_boards(boards: &Several<Processor>, scenes: &[Scene], wanted: &dyn Fn(&Scene) -> Vec<Shader>, json: bool) -> Result<Outcome> {
-    // Of all boards those that draw styles.
-    let is_possible = |board: Processor| board == Processor::X86_64 || board_styles::possible(board);
-    for board in boards.values.iter().copied().filter(|&board| !boards.all || is_possible(board)) {
-        if !is_possible(board) {
-            let name = board.board_name();
-            return Err(Usage(format!(
-                "--styles: {name} has too little memory for the programs; use --board mps2-an385, mps2-an386 or x86-64"
-            ))
-            .into());
-        }
+    for &board in &boards.values {
         if board == Processor::X86_64 {
             in_styles(scenes, wanted, styles::styles, json)?;
             continue;
@@ -312,6 +292,14 @@ fn styled(costs: &[StyleCosts], json: bool) -> Result<()> {
                 _ => "-".to_owned(),
             };
             report::line(&format!("  {style:20}{}", cells(costs.iter().map(figure).collect())))?;
+        }
+        for (number, style) in first.styles.iter().enumerate() {
+            for same in costs.chunk_by(|one, next| one.obstacles[number] == next.obstacles[number]) {
+                let methods: Vec<_> = same.iter().map(|cost| cost.shader).collect();
+                if let Some(obstacle) = same.first().and_then(|cost| cost.obstacles[number].as_ref()) {
+                    report::line(&format!("  left out: {style}, {}: {obstacle}", methods.join(", ")))?;
+                }
+            }
         }
     }
     Ok(())

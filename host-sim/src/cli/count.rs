@@ -19,11 +19,11 @@ pub(super) struct Cost {
     frames_per_second: Option<f64>,
 }
 
-/// Compiles what the boards execute: all of them, or the one that has this name.
+/// The boards to count on: all of them, or the one that has this name.
 #[cfg(feature = "boards")]
 pub(super) fn prepare(board: Option<&str>) -> Result<Counter> {
     use super::Usage;
-    use microphong_bench::{Bench, processor::Processor};
+    use microphong_bench::processor::Processor;
 
     let is_wanted = |processor: &&Processor| board.is_none_or(|board| processor.board_name() == board);
     let boards = Processor::ALL.iter().filter(|processor| processor.board().is_some()).filter(is_wanted);
@@ -32,7 +32,7 @@ pub(super) fn prepare(board: Option<&str>) -> Result<Counter> {
         let board = board.unwrap_or_default();
         return Err(Usage(format!("--count cannot count frames of {board}; use mps2-an385, which has the same processor")).into());
     }
-    Ok(Counter { bench: Bench::new(&boards)?, boards })
+    Ok(Counter { boards })
 }
 
 /// Says how to get a build that can count.
@@ -42,10 +42,9 @@ pub(super) fn prepare(_: Option<&str>) -> Result<Counter> {
     refuse("boards to count on", "convert", &arguments).map(|_| Counter)
 }
 
-/// The programs of boards.
+/// Boards to count on.
 #[cfg(feature = "boards")]
 pub(super) struct Counter {
-    bench: microphong_bench::Bench,
     boards: Vec<microphong_bench::processor::Processor>,
 }
 
@@ -54,15 +53,23 @@ pub(super) struct Counter {
 pub(super) struct Counter;
 
 impl Counter {
-    /// What frames of a scene take by the method that it asks for.
+    /// What frames of a scene take by the method that it asks for, by the least program that draws it. Of several boards, one that cannot have this program
+    /// is left out.
     #[cfg(feature = "boards")]
     pub(super) fn count(&self, scene: &Scene) -> Result<Vec<Cost>> {
+        use microphong_bench::{Bench, board_styles::Program};
         use microphong_sim::shader::Shader;
 
-        let shader = Shader::of(&scene.stream.parse()?)?;
-        let wanted: Vec<_> = self.boards.iter().map(|&board| (board, shader)).collect();
+        let stream = scene.stream.parse()?;
+        let (shader, program) = (Shader::of(&stream)?, Program::needed_by(&stream));
+        let mut boards = self.boards.clone();
+        if boards.len() > 1 {
+            boards.retain(|processor| processor.board().is_some_and(|board| program.check(board).is_ok()));
+        }
+        let bench = Bench::of_program(&boards, program)?;
+        let wanted: Vec<_> = boards.iter().map(|&board| (board, shader)).collect();
         let bar = report::progress(wanted.len() as u64, "counting instructions");
-        let measured = self.bench.count(scene, &wanted, &|| bar.inc(1))?;
+        let measured = bench.count(scene, &wanted, &|| bar.inc(1))?;
         bar.finish_and_clear();
         let cost = |m: microphong_bench::Measurement| {
             let (width, height) = m.board.size();
