@@ -106,6 +106,29 @@ fn inverse_by_table(d: u32) -> u32 {
     quotient
 }
 
+/// Quotient `n 2^16 / d`, rounded down, and the rest. `reciprocal` is the [`inverse`] of `d`, shifted left by `zeros` so that its upper bit is the
+/// 16th.
+///
+/// Domain: `n` is at most `d`, and `d` is 1 to 2^16 - 1. Exact (tests::fractions_are_exact). Source: the reciprocal, corrected by the remainder.
+#[inline(always)]
+#[must_use]
+pub(crate) fn fraction(n: u32, d: u32, (reciprocal, zeros): (u32, u32)) -> (u32, u32) {
+    if HALVES { fraction_by_inverse(n, d, (reciprocal, zeros)) } else { ((n << 16) / d.max(1), (n << 16) % d.max(1)) }
+}
+
+#[inline(always)]
+fn fraction_by_inverse(n: u32, d: u32, (reciprocal, zeros): (u32, u32)) -> (u32, u32) {
+    // Too small by less than 2.
+    let mut quotient = n.wrapping_mul(reciprocal) >> (16 - zeros);
+    let mut rest = (n << 16).wrapping_sub(quotient.wrapping_mul(d));
+    for _ in 0..2 {
+        if rest >= d {
+            (quotient, rest) = (quotient + 1, rest - d);
+        }
+    }
+    (quotient, rest)
+}
+
 /// Quotient `n / d` of long numbers, rounded down; 0 if `d` is 0. Exact (tests::long_quotients_are_exact).
 #[inline]
 #[must_use]
@@ -194,6 +217,19 @@ mod tests {
     fn every_inverse_is_exact() {
         for d in 1 << 15..1 << 16 {
             assert_eq!(inverse_by_table(d), u32::MAX / d, "{d}");
+        }
+    }
+
+    #[test]
+    fn fractions_are_exact() {
+        for d in (1..1u32 << 16).step_by(13).chain(1..300).chain(65_300..1 << 16) {
+            let zeros = d.leading_zeros() - 16;
+            for n in (0..=d).step_by(1 + d as usize / 61).chain([d / 2, d - 1, d]) {
+                let quotient = ((u64::from(n) << 16) / u64::from(d)) as u32;
+                let expected = (quotient, ((u64::from(n) << 16) - u64::from(quotient) * u64::from(d)) as u32);
+                let by_inverse = fraction_by_inverse(n, d, (inverse_by_table(d << zeros), zeros));
+                assert_eq!([by_inverse, fraction(n, d, (inverse(d << zeros), zeros))], [expected; 2], "{n} / {d}");
+            }
         }
     }
 

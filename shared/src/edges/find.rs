@@ -4,6 +4,7 @@ use crate::{
     edges::{Edge, Place, cut::Flat},
     features::TRANSPARENCY,
     geometry::{
+        bin::Entry,
         clip::{clip, clip_edge},
         cull::Facing,
         projection::{ScreenVertex, State, View},
@@ -32,38 +33,61 @@ pub(crate) struct Outlined<'f> {
     pub(crate) is_transparent: bool,
 }
 
-/// Triangles of a mesh, one bit each.
+/// Triangles of a mesh, one bit each. A word is rotated by the number of a triangle, and the triangle's bit is the sign: this takes one instruction.
 pub(crate) type Set = [u32];
 
-/// Whether a triangle is in `set`.
-#[inline]
-pub(crate) fn has(set: &Set, triangle: u16) -> bool {
-    set.get(usize::from(triangle >> 5)).is_some_and(|word| word >> (triangle & 31) & 1 != 0)
+/// A word whose sign tells whether a neighbour is in `set`; `None` if it is not.
+#[inline(always)]
+fn sign(set: &Set, neighbour: u16) -> Option<u32> {
+    set.get(usize::from((neighbour & OPEN) >> 5)).map(|word| word.rotate_right(neighbour.into()))
 }
 
-/// Adds a triangle to `set`.
-#[inline]
-pub(crate) fn add(set: &mut Set, triangle: usize) {
-    if let Some(word) = set.get_mut(triangle >> 5) {
-        *word |= 1 << (triangle & 31);
+/// Adds the triangles of a mesh to `set`. Entries of the mesh, whose triangles begin with number `first`, come before others. Returns how many they
+/// are.
+#[inline(never)]
+pub(crate) fn collect(set: &mut Set, entries: &[Entry], first: u32, triangles: u32) -> usize {
+    let mut count = 0;
+    for entry in entries {
+        let triangle = entry.key().triangle().wrapping_sub(first);
+        if triangle >= triangles {
+            break;
+        }
+        if let Some(word) = set.get_mut((triangle >> 5) as usize) {
+            *word |= (1u32 << 31).rotate_left(triangle);
+        }
+        count += 1;
     }
+    count
 }
 
 impl Outlined<'_> {
+    /// Calls `put` with the outlines of `entries`, which are all triangles of the mesh that face the viewer, and are in the set `facing`. They begin
+    /// with number `first` in the frame.
+    #[inline(never)]
+    pub(crate) fn outlines(&self, entries: &[Entry], first: u32, facing: &Set, put: &mut dyn FnMut(&Edge)) {
+        for entry in entries {
+            let triangle = entry.key().triangle().wrapping_sub(first) as usize;
+            let Some(&Neighbours([a, b, c])) = self.neighbours.get(triangle) else { continue };
+            // Most have neighbours that face the viewer, and no crease. No triangle has the number `OPEN`.
+            if let (Some(one), Some(two), Some(three)) = (sign(facing, a), sign(facing, b), sign(facing, c))
+                && ((one & two & three & !(u32::from(a | b | c) << (31 - CREASE.ilog2()))) as i32) < 0
+            {
+                continue;
+            }
+            self.edges(triangle, |triangle| sign(facing, triangle).is_some_and(|word| (word as i32) < 0), put);
+        }
+    }
+
     /// Calls `put` with the outlines that belong to a triangle that faces the viewer. `faces` tells of each neighbour whether it does so, too.
-    #[inline(always)]
+    #[inline(never)]
     pub(crate) fn edges(&self, triangle: usize, faces: impl Fn(u16) -> bool, put: &mut dyn FnMut(&Edge)) {
-        let Some(Neighbours([a, b, c])) = self.neighbours.get(triangle).copied() else { return };
-        // No triangle has the number `OPEN`.
-        let surrounded = faces(a & OPEN) && faces(b & OPEN) && faces(c & OPEN);
-        if !surrounded || (a | b | c) & CREASE != 0 {
-            for (k, neighbour) in [a, b, c].into_iter().enumerate() {
-                let other = neighbour & OPEN;
-                if !faces(other) {
-                    self.put(triangle, k, (other == OPEN).then_some(triangle), put);
-                } else if neighbour & CREASE != 0 && usize::from(other) > triangle {
-                    self.put(triangle, k, Some(other.into()), put);
-                }
+        let Some(&Neighbours(neighbours)) = self.neighbours.get(triangle) else { return };
+        for (k, neighbour) in neighbours.into_iter().enumerate() {
+            let other = neighbour & OPEN;
+            if !faces(other) {
+                self.put(triangle, k, (other == OPEN).then_some(triangle), put);
+            } else if neighbour & CREASE != 0 && usize::from(other) > triangle {
+                self.put(triangle, k, Some(other.into()), put);
             }
         }
     }
@@ -72,7 +96,6 @@ impl Outlined<'_> {
     #[inline(never)]
     fn put(&self, triangle: usize, k: usize, other: Option<usize>, put: &mut dyn FnMut(&Edge)) {
         let Some(triangle) = self.triangles.get(triangle) else { return };
-        let beyond = other.and_then(|other| self.triangles.get(other)).map(|other| self.range(other));
         // Seen from the front, corners run counter-clockwise, and the surface lies to the left.
         let [a, b, c] = triangle.corners;
         let (from, to) = match k {
@@ -80,15 +103,22 @@ impl Outlined<'_> {
             1 => (c, b),
             _ => (a, c),
         };
-        let ends = match (self.cached(from), self.cached(to)) {
-            (Some(from), Some(to)) => Some([from, to]),
-            _ => self.clipped([from, to]),
+        let third = a ^ b ^ c ^ from ^ to;
+        let (from, to, range) = match (self.cached(from), self.cached(to), self.cached(third)) {
+            (Some(from), Some(to), Some([.., depth])) => (from, to, self.range_of(triangle, [from[2], to[2], depth])),
+            (from_place, to_place, _) => {
+                let ends = from_place.zip(to_place).map_or_else(|| self.clipped([from, to]), |(from, to)| Some([from, to]));
+                let Some([from, to]) = ends else { return };
+                (from, to, self.range(triangle))
+            }
         };
-        let Some([from, to]) = ends else { return };
         // An object may stand on a surface. That surface is nearer than the object's lower edge, because it rises towards the viewer.
-        let beyond = beyond.unwrap_or(from[2].max(to[2]) >> RISE);
+        let beyond = match other.and_then(|other| self.triangles.get(other)) {
+            Some(other) => self.range(other),
+            None => from[2].max(to[2]) >> RISE,
+        };
         // The depth of a transparent surface is not known: whatever is seen beside its edge lies behind it, or the surface beyond is nearer.
-        let range = if TRANSPARENCY && self.is_transparent { i32::MAX } else { self.range(triangle) };
+        let range = if TRANSPARENCY && self.is_transparent { i32::MAX } else { range };
         if let Some(edge) = Edge::new([from, to], range, beyond) {
             put(&edge);
         }
@@ -137,26 +167,39 @@ impl Outlined<'_> {
     }
 
     /// The range of inverse depth of a triangle. Where that is large, it is the range within a pixel.
-    #[inline]
+    #[inline(never)]
     fn range(&self, triangle: &Triangle) -> i32 {
         let [a, b, c] = triangle.corners;
-        let [farthest, nearest] = match (self.cached(a), self.cached(b), self.cached(c)) {
-            (Some([.., a]), Some([.., b]), Some([.., c])) => [a.min(b).min(c), a.max(b).max(c)],
+        let depths = match (self.cached(a), self.cached(b), self.cached(c)) {
+            (Some([.., a]), Some([.., b]), Some([.., c])) => [a, b, c],
             _ => self.clipped_depths(triangle),
         };
-        let range = nearest.wrapping_sub(farthest);
-        if range <= nearest >> STEEP { range } else { self.flat_of(triangle).map_or(range, |flat| flat.range()) }
+        self.range_of(triangle, depths)
     }
 
-    /// The least and the largest inverse depth of what is left of a triangle after clipping.
+    /// [`Self::range`] of a triangle whose corners have these inverse depths.
+    #[inline(always)]
+    fn range_of(&self, triangle: &Triangle, [a, b, c]: [i32; 3]) -> i32 {
+        let nearest = a.max(b).max(c);
+        let range = nearest.wrapping_sub(a.min(b).min(c));
+        if range <= nearest >> STEEP { range } else { self.range_in_pixel(triangle).unwrap_or(range) }
+    }
+
+    #[inline(never)]
+    fn range_in_pixel(&self, triangle: &Triangle) -> Option<i32> {
+        Some(self.flat_of(triangle)?.range())
+    }
+
+    /// The least and the largest inverse depth of what is left of a triangle after clipping, the latter twice.
     #[cold]
     #[inline(never)]
-    fn clipped_depths(&self, triangle: &Triangle) -> [i32; 2] {
+    fn clipped_depths(&self, triangle: &Triangle) -> [i32; 3] {
         let [a, c, b] = triangle.corners.map(|corner| self.vertices.get(usize::from(corner)));
-        let (Some(a), Some(b), Some(c)) = (a, b, c) else { return [0; 2] };
+        let (Some(a), Some(b), Some(c)) = (a, b, c) else { return [0; 3] };
         let polygon = clip(self.view, [a, b, c]);
         let depth = || polygon.iter().map(|cut| cut.place[2]);
-        [depth().min().unwrap_or(0), depth().max().unwrap_or(0)]
+        let (least, most) = (depth().min().unwrap_or(0), depth().max().unwrap_or(0));
+        [least, most, most]
     }
 
     /// Whether a triangle faces the viewer and touches a pixel of `area`.

@@ -27,9 +27,10 @@ use crate::{
 };
 use zerocopy::{FromBytes, Immutable, IntoBytes, KnownLayout};
 
-/// An edge on the screen. The surface lies to its right, seen along the edge from its first end to its second one.
+/// An edge on the screen. The surface lies to its right, seen along the edge from its first end to its second one. It is aligned, so that it is
+/// copied word by word.
 #[derive(FromBytes, IntoBytes, Immutable, KnownLayout, Clone, Copy, Debug, Default, PartialEq, Eq)]
-#[repr(C)]
+#[repr(C, align(4))]
 pub(crate) struct Edge {
     /// The ends `[x, y]`, in 1/16 pixel.
     ends: [[i16; 2]; 2],
@@ -67,12 +68,13 @@ impl Edge {
         touched(a, b)
     }
 
-    /// Whether the edge may note a pixel of `area`.
+    /// The rows of `area` in which the edge may note a pixel, half open. Returns `None` if it notes none.
     #[inline]
-    pub(crate) fn meets(&self, area: &PixelRect) -> bool {
+    pub(crate) fn rows_in(&self, area: &PixelRect) -> Option<[u32; 2]> {
         let [[ax, ay], [bx, by]] = self.ends;
-        let meets = |[first, end]: [i32; 2], [from, to]: [u16; 2]| first < i32::from(to) && end > i32::from(from);
-        meets(touched(ax, bx), area.columns) && meets(touched(ay, by), area.rows)
+        let within = |[first, end]: [i32; 2], [from, to]: [u16; 2]| [first.max(from.into()), end.min(to.into())];
+        let ([left, right], [top, bottom]) = (within(touched(ax, bx), area.columns), within(touched(ay, by), area.rows));
+        (left < right && top < bottom).then_some([top as u32, bottom as u32])
     }
 }
 

@@ -3,93 +3,212 @@
 //! An edge is walked along its longer axis. In each column of that axis (a column or a row of the picture) whose centre it passes, it runs between
 //! the centres of two pixels, or through one of them. The area of the pixel on the other side of the edge is exact for the straight line.
 
-use crate::{arch::quotient::inverse, edges::Edge, format::SUBPIXEL};
+use crate::{
+    arch::quotient::{fraction, inverse},
+    edges::Edge,
+    format::SUBPIXEL,
+};
+use core::ops::Range;
 
-/// Direction of a neighbour, the lower bits of a mark.
+/// Direction of a neighbour, the lower bits of a mark. The opposite direction differs in the first bit.
 pub(crate) const UP: u8 = 0;
 /// See [`UP`].
 pub(crate) const DOWN: u8 = 1;
-/// See [`UP`].
+/// See [`UP`]. The neighbour to the right is the fourth one.
 pub(crate) const LEFT: u8 = 2;
-/// See [`UP`].
-pub(crate) const RIGHT: u8 = 3;
 
 /// Bits of a direction.
 pub(crate) const DIRECTION: u32 = 2;
 
 /// Fraction bits of the share of a neighbour in a mark. A share is less than a half.
-pub(crate) const SHARE: u32 = 7;
-
-/// The rows of a picture in which edges are walked.
-pub(crate) struct Window<'w> {
-    /// Number of columns.
-    pub(crate) width: i32,
-    /// The rows whose depth is known, half open.
-    pub(crate) rows: [i32; 2],
-    /// The depth in these rows.
-    pub(crate) depth: &'w [u16],
-    /// The first of the rows in which pixels are noted.
-    pub(crate) top: i32,
-    /// One past the last of them.
-    pub(crate) bottom: i32,
-    /// A share and a direction for each pixel of these rows, or 0. If edges are lines, it is a share of 255.
-    pub(crate) marks: &'w mut [u8],
-    /// Whether edges are lines.
-    pub(crate) lines: bool,
-    /// The pixels that are noted.
-    pub(crate) places: &'w mut [u16],
-    /// Number of pixels that are noted. If it exceeds the places, some found no room.
-    pub(crate) count: usize,
-}
+const SHARE: u32 = 7;
 
 const ONE: i32 = 1 << 16;
 const HALF: i32 = ONE / 2;
 
-impl Window<'_> {
-    /// Notes a pixel of the window; `share` is Q.16 and less than a half.
-    #[inline(always)]
-    fn note(&mut self, pixel: i32, share: i32, direction: u8) {
-        self.mark(pixel, ((share >> (16 - SHARE)).min((1 << (SHARE - 1)) - 1) << DIRECTION) as u8 | direction);
+/// The rows of a picture in which edges are walked.
+pub(crate) struct Window<'w> {
+    /// How edges are walked whose longer axis is y, and how the ones whose longer axis is x.
+    axes: [Axis<'w>; 2],
+    /// Whether edges are lines.
+    lines: bool,
+    notes: Notes<'w>,
+}
+
+/// The pixels of a window, as edges see them that are walked along an axis.
+struct Axis<'w> {
+    /// Whether it is x.
+    is_flat: bool,
+    /// The columns of this axis, half open.
+    majors: [i32; 2],
+    /// The first pixel of a column.
+    first_minor: i32,
+    /// The number of pairs of pixels in a column.
+    pairs: u32,
+    /// The steps to the next column, and to the next pixel of a column.
+    strides: [i32; 2],
+    /// The place that a pixel of column 0 would have.
+    origin: i32,
+    /// The direction to the pixel before in a column.
+    backwards: i32,
+    /// The depth of the first pixel of a pair, and that of the second one, by the place of the first one.
+    pair: [&'w [u16]; 2],
+}
+
+/// The pixels that are noted.
+struct Notes<'w> {
+    /// How many pixels whose depth is known come before the first one that may be noted.
+    earlier: i32,
+    /// A share and a direction for each pixel, or 0. If edges are lines, it is a share of 255.
+    marks: &'w mut [u8],
+    places: &'w mut [u16],
+    /// Number of pixels that are noted. If it exceeds the places, some found no room.
+    count: usize,
+}
+
+/// What the pixels along an edge have in common.
+struct Slant {
+    /// The step from the first pixel of a pair to the second one.
+    stride: i32,
+    /// The direction from the second pixel to the first one; the other direction is [`DOWN`] more.
+    backwards: i32,
+    /// Half of how far the edge rises in a column, Q.16, and 2^24 over 1/16 of that, see [`per_corner`].
+    half_step: i32,
+    per_corner: i32,
+}
+
+impl Notes<'_> {
+    /// Notes pixels of a pair between whose centres an edge passes. `first` is the place of the first one among those whose depth is known, and the
+    /// edge passes so far `behind` the border between both. Out of line, so that the loop over columns has registers enough.
+    #[inline(never)]
+    fn note(&mut self, slant: &Slant, first: i32, behind: i32) {
+        let pixel = first.wrapping_sub(self.earlier);
+        let &Slant { stride, backwards, half_step, per_corner } = slant;
+        let (near, far, distance, direction) = if behind < 0 {
+            (pixel, pixel.wrapping_add(stride), behind.wrapping_neg(), backwards | i32::from(DOWN))
+        } else {
+            (pixel.wrapping_add(stride), pixel, behind, backwards)
+        };
+        let past = half_step - distance;
+        let mut share = distance;
+        if past > 0 {
+            let small = (((past >> 4) * (past >> 4)) >> 8).wrapping_mul(per_corner) >> 14;
+            share += small;
+            if small > 256 {
+                self.mark(far, share_of(small, direction ^ i32::from(DOWN)));
+            }
+        }
+        self.mark(near, share_of(share, direction));
     }
 
-    /// Marks a pixel of the window, unless it has a larger mark. Domain: `mark` is not 0.
+    /// Marks both pixels of a line that passes between them.
+    #[cold]
+    #[inline(never)]
+    fn line(&mut self, stride: i32, first: i32, behind: i32) {
+        let pixel = first.wrapping_sub(self.earlier);
+        let share = ((behind + HALF) >> 8).clamp(1, 254);
+        self.mark(pixel, 255 - share);
+        self.mark(pixel.wrapping_add(stride), share);
+    }
+
+    /// Marks a pixel, unless it has a larger mark. Domain: `mark` is 1 to 255.
     #[inline(always)]
-    fn mark(&mut self, pixel: i32, mark: u8) {
-        if let Some(old) = self.marks.get_mut(pixel as usize) {
-            if *old == 0 {
-                if let Some(place) = self.places.get_mut(self.count) {
-                    *place = pixel as u16;
-                }
-                self.count += 1;
+    fn mark(&mut self, pixel: i32, mark: i32) {
+        let Some(own) = self.marks.get_mut(pixel as usize) else { return };
+        let old = i32::from(*own);
+        if old == 0 {
+            *own = mark as u8;
+            if let Some(place) = self.places.get_mut(self.count) {
+                *place = pixel as u16;
             }
-            *old = mark.max(*old);
+            self.count += 1;
+        } else if old < mark {
+            *own = mark as u8;
         }
+    }
+}
+
+/// The mark for a share of the neighbour in a direction; `share` is Q.16 and less than a half.
+#[inline(always)]
+fn share_of(share: i32, direction: i32) -> i32 {
+    (share >> (16 - SHARE)).clamp(0, (1 << (SHARE - 1)) - 1) << DIRECTION | direction
+}
+
+impl<'w> Window<'w> {
+    /// The rows of a picture of `width` columns. The depth is known in `known` rows. Pixels are noted in other `rows`, a part of these: each has a
+    /// mark, which is 0, and the noted ones are listed in `places`.
+    pub(crate) fn new(
+        width: usize,
+        (known, depth): (&Range<u32>, &'w [u16]),
+        rows: &Range<u32>,
+        lines: bool,
+        marks: &'w mut [u8],
+        places: &'w mut [u16],
+    ) -> Self {
+        let pair = |stride: usize| {
+            let second = depth.get(stride..).unwrap_or_default();
+            [depth.get(..second.len()).unwrap_or_default(), second]
+        };
+        let (first, end, columns) = (known.start as i32, known.end as i32, width as i32);
+        let steep = Axis {
+            is_flat: false,
+            majors: [rows.start as i32, rows.end as i32],
+            first_minor: 0,
+            pairs: columns.saturating_sub(1) as u32,
+            strides: [columns, 1],
+            origin: first.wrapping_mul(columns).wrapping_neg(),
+            backwards: LEFT.into(),
+            pair: pair(1),
+        };
+        let flat = Axis {
+            is_flat: true,
+            majors: [0, columns],
+            first_minor: first,
+            pairs: (end - first).saturating_sub(1) as u32,
+            strides: [1, columns],
+            origin: 0,
+            backwards: UP.into(),
+            pair: pair(width),
+        };
+        let earlier = (rows.start as i32 - first).wrapping_mul(columns);
+        Self { axes: [steep, flat], lines, notes: Notes { earlier, marks, places, count: 0 } }
+    }
+
+    /// The number of pixels that are noted, if they have found room.
+    pub(crate) fn close(self) -> Option<usize> {
+        let Notes { marks, places, count, .. } = self.notes;
+        if count > places.len() {
+            marks.fill(0);
+            return None;
+        }
+        Some(count)
     }
 
     /// Walks an edge.
+    #[inline(never)]
     pub(crate) fn walk(&mut self, edge: &Edge) {
         // One by one: `map` of arrays goes through memory at opt-level "s".
         let Edge { ends: [[ax, ay], [bx, by]], depth: [a, b], range, beyond } = *edge;
         let (ax, ay, bx, by) = (i32::from(ax), i32::from(ay), i32::from(bx), i32::from(by));
-        let (a, b, depth_bounds) = (i32::from(a), i32::from(b), [i32::from(range), i32::from(beyond)]);
-        // The major coordinate grows from the first end to the second. The surface lies on the side of larger minor coordinates where an edge runs to
-        // the right, or up.
-        if (bx - ax).abs() >= (by - ay).abs() {
-            let (from, to) = if ax <= bx { ([ax, ay, a], [bx, by, b]) } else { ([bx, by, b], [ax, ay, a]) };
-            self.follow(true, [from, to], depth_bounds, ax <= bx);
-        } else {
-            let (from, to) = if ay <= by { ([ay, ax, a], [by, bx, b]) } else { ([by, bx, b], [ay, ax, a]) };
-            self.follow(false, [from, to], depth_bounds, by < ay);
+        let Self { axes: [steep, flat], lines, notes } = self;
+        // The major coordinate grows from the first end to the second.
+        let (axis, mut m0, mut n0, mut m1, mut n1) =
+            if (bx - ax).abs() >= (by - ay).abs() { (flat, ax, ay, bx, by) } else { (steep, ay, ax, by, bx) };
+        let (mut z0, mut z1) = (i32::from(a), i32::from(b));
+        let turns = m0 > m1;
+        if turns {
+            (m0, n0, z0, m1, n1, z1) = (m1, n1, z1, m0, n0, z0);
         }
-    }
-
-    /// Follows an edge whose ends are `[major coordinate, minor coordinate, depth]`. Its major axis is x if it `is_flat`, and y if not.
-    #[inline(never)]
-    fn follow(&mut self, is_flat: bool, [[m0, n0, z0], [m1, n1, z1]]: [[i32; 3]; 2], [range, beyond]: [i32; 2], is_below: bool) {
-        let length = (m1 - m0) as u32;
-        let width = self.width;
-        let ([first_major, end_major], [first_minor, end_minor]) =
-            if is_flat { ([0, width], self.rows) } else { ([self.top, self.bottom], [0, width]) };
+        let Axis {
+            is_flat,
+            majors: [first_major, end_major],
+            first_minor,
+            pairs,
+            strides: [major_stride, minor_stride],
+            origin,
+            backwards,
+            pair,
+        } = *axis;
         // Columns whose centre it passes.
         let half = 1 << (SUBPIXEL - 1);
         let first = ((m0 + half - 1) >> SUBPIXEL).max(first_major);
@@ -97,72 +216,53 @@ impl Window<'_> {
         if first >= end {
             return;
         }
+        let range = i32::from(range);
+        let length = (m1 - m0) as u32;
         // 2^32 / length, shifted right by `zeros`.
         let zeros = length.leading_zeros().wrapping_sub(16) & 15;
         let reciprocal = inverse(length << zeros);
-        let signed = |size: u32, sign: i32| if sign < 0 { (size as i32).wrapping_neg() } else { size as i32 };
         // A pixel whose centre lies on the edge is before a line that descends to the right, and behind all others, as where triangles are filled:
-        // its row begins there, or ends before. So `step` is rounded up where the line descends, and down elsewhere: such centres stay on their side.
-        // The part of a step to the first column is rounded down everywhere: at such a centre the exact value and the sum are integers, so a sum that
-        // is less than 1 too small is not too small. At a column n, another centre nearer than n/65536 of a pixel may be taken for one on the other
-        // side.
-        let is_before = is_flat && n1 > n0;
-        let rise = (n1 - n0).unsigned_abs();
-        // Too small by less than 2.
-        let mut slope = rise.wrapping_mul(reciprocal) >> (16 - zeros);
-        let mut rest = (rise << 16).wrapping_sub(slope.wrapping_mul(length));
-        for _ in 0..2 {
-            if rest >= length {
-                (slope, rest) = (slope + 1, rest - length);
-            }
-        }
-        let step = signed(slope + u32::from(rest > 0 && (is_before || n1 < n0)), n1 - n0);
-        let depth_step = signed((z1 - z0).unsigned_abs().wrapping_mul(reciprocal >> 2) >> (18 - zeros), z1 - z0);
-        // `minor` is how far the edge lies behind the centre of the first pixel of the minor axis, Q.16. `depth` is Q.12. Both are those of the first
-        // column.
+        // its row begins there, or ends before. So the step is rounded up where the line descends, and down elsewhere: such centres stay on their
+        // side. The part of a step to the first column is rounded down everywhere: at such a centre the exact value and the sum are integers, so a
+        // sum that is less than 1 too small is not too small. At a column n, another centre nearer than n/65536 of a pixel may be taken for one on
+        // the other side.
+        let rise = n1 - n0;
+        let (slope, rest) = fraction(rise.unsigned_abs(), length, (reciprocal, zeros));
+        let size = slope as i32 + i32::from(rest > 0 && (rise < 0 || is_flat));
+        let step = if rise < 0 { size.wrapping_neg() } else { size };
+        let growth = z1 - z0;
+        let depth_step = (growth.unsigned_abs().wrapping_mul(reciprocal >> 2) >> (18 - zeros)) as i32;
+        let depth_step = if growth < 0 { depth_step.wrapping_neg() } else { depth_step };
+        // `minor` is how far the edge lies behind the centre of the first pixel of the minor axis, Q.16. `least` is the least depth of the pixel on
+        // the surface, Q.12. Both are those of the first column.
         let from = (first << SUBPIXEL) + half - m0;
         let minor = (n0 << (16 - SUBPIXEL)) + step.wrapping_mul(from >> SUBPIXEL) + (step.wrapping_mul(from & 15) >> SUBPIXEL);
-        let mut minor = minor.wrapping_sub(HALF + i32::from(!is_before) + (first_minor << 16));
-        let mut depth = (z0 << 12) + depth_step.wrapping_mul(from);
+        let mut minor = minor.wrapping_sub(HALF + i32::from(!(is_flat && rise > 0)) + (first_minor << 16));
+        let mut least = (z0.wrapping_sub(range) << 12).wrapping_add(depth_step.wrapping_mul(from));
+        // The pixel beyond the edge may be nearer than that by as much.
+        let nearer = range + i32::from(beyond);
         let depth_step = depth_step << SUBPIXEL;
-        let half_step = step.abs() >> 1;
-        let corner = per_corner(half_step);
-        let (major_stride, minor_stride) = if is_flat { (1, width) } else { (width, 1) };
-        let [towards_low, towards_high] = if is_flat { [UP, DOWN] } else { [LEFT, RIGHT] };
-        let mut base = if is_flat { first } else { (first - self.rows[0]) * width };
-        let to_mark = (self.top - self.rows[0]) * width;
-        let pairs = (end_minor - 1 - first_minor) as u32;
-        // Lines need a surface beside them. Rows that no triangle reaches have no depth.
-        let least = i32::from(self.lines);
-        let known = self.depth;
-        let inv_depth = |at: i32| known.get(at as usize).map_or(0, |depth| i32::from(*depth));
-        let mut left = end - first;
+        let half_step = size >> 1;
+        let slant = Slant { stride: minor_stride, backwards, half_step, per_corner: per_corner(half_step) };
+        let (mut base, mut left) = (first.wrapping_mul(major_stride).wrapping_add(origin), end - first);
+        // The surface lies on the side of larger minor coordinates where an edge runs to the right, or up.
+        let [first, second] = pair;
+        let (outer, inner) = if is_flat == turns { (second, first) } else { (first, second) };
         loop {
             // The last pixel whose centre lies before the edge; its pair is the next one.
             let low = minor >> 16;
             if (low as u32) < pairs {
-                let at = base + low * minor_stride;
-                let (low_depth, high_depth, own) = (inv_depth(at), inv_depth(at + minor_stride), depth >> 12);
-                let (outer, inner) = if is_below { (low_depth, high_depth) } else { (high_depth, low_depth) };
-                if outer <= own + beyond && inner >= (own - range).max(least) {
-                    // The edge lies this far behind the centre of `low`.
-                    let (behind, pixel) = (minor & (ONE - 1), at - to_mark);
-                    if self.lines {
-                        let share = (behind >> 8).clamp(1, 254) as u8;
-                        self.mark(pixel, 255 - share);
-                        self.mark(pixel + minor_stride, share);
-                    } else {
-                        let is_low = behind < HALF;
-                        let distance = (behind - HALF).abs();
-                        let past = half_step - distance;
-                        let small = if past > 0 { (((past >> 4) * (past >> 4)) >> 8).wrapping_mul(corner) >> 14 } else { 0 };
-                        let high = pixel + minor_stride;
-                        let (near, to_far) = if is_low { (pixel, towards_high) } else { (high, towards_low) };
-                        self.note(near, distance + small, to_far);
-                        if small > 256 {
-                            let (far, to_near) = if is_low { (high, towards_low) } else { (pixel, towards_high) };
-                            self.note(far, small, to_near);
-                        }
+                let at = base.wrapping_add(low.wrapping_mul(minor_stride));
+                if let (Some(&outer), Some(&inner)) = (outer.get(at as usize), inner.get(at as usize))
+                    && i32::from(inner) >= least >> 12
+                    && i32::from(outer) <= (least >> 12).wrapping_add(nearer)
+                {
+                    let behind = (minor & (ONE - 1)) - HALF;
+                    if !*lines {
+                        notes.note(&slant, at, behind);
+                    } else if inner > 0 {
+                        // Lines need a surface beside them. Rows that no triangle reaches have no depth.
+                        notes.line(minor_stride, at, behind);
                     }
                 }
             }
@@ -170,9 +270,9 @@ impl Window<'_> {
             if left == 0 {
                 return;
             }
+            base = base.wrapping_add(major_stride);
             minor = minor.wrapping_add(step);
-            depth = depth.wrapping_add(depth_step);
-            base += major_stride;
+            least = least.wrapping_add(depth_step);
         }
     }
 }
@@ -225,17 +325,7 @@ mod tests {
             let place = |x, y| -> Place { [x, y, 1000 << 12] };
             let edge = Edge::new([place(ax, ay), place(bx, by)], 0, 0).unwrap();
             let (mut marks, mut places) = ([0; (SIDE * SIDE) as usize], [0; (SIDE * SIDE) as usize]);
-            let mut window = Window {
-                width: SIDE,
-                rows: [0, SIDE],
-                depth: &depth,
-                top: 0,
-                bottom: SIDE,
-                marks: &mut marks,
-                lines: false,
-                places: &mut places,
-                count: 0,
-            };
+            let mut window = Window::new(SIDE as usize, (&(0..SIDE as u32), &depth), &(0..SIDE as u32), false, &mut marks, &mut places);
             window.walk(&edge);
             for at in (0..SIDE * SIDE).filter(|at| marks[*at as usize] != 0) {
                 let beyond = at + [-SIDE, SIDE, -1, 1][usize::from(marks[at as usize] & 3)];

@@ -241,7 +241,7 @@ impl<'r> Context<'r> {
                 && let Some(one) = one.flat(first)
                 && let Some(other) = other.flat(other_first)
                 && let Some(edge) = one.edge(&other)
-                && edge.meets(&hull)
+                && edge.rows_in(&hull).is_some()
             {
                 put(&edge);
             }
@@ -290,7 +290,7 @@ impl<'r> Context<'r> {
             for triangle in 0..outlined.triangles.len() {
                 if faces(triangle as u16) {
                     outlined.edges(triangle, faces, &mut |edge| {
-                        if edge.meets(&hull) {
+                        if edge.rows_in(&hull).is_some() {
                             put(edge);
                         }
                     });

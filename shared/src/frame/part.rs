@@ -1,7 +1,7 @@
 //! Some rows of a frame, drawn band by band from the top. Two parts share nothing that drawing writes, so they can be drawn at the same time.
 
 use crate::{
-    edges::find,
+    edges::{Edge, find},
     error::RenderError,
     features::{ANTIALIAS, SKIPS},
     frame::{
@@ -308,31 +308,27 @@ impl<'r> FrameRows<'r> {
         // An edge changes pixels beside those of triangles.
         let reach = rows.start.saturating_sub(1)..rows.end.saturating_add(1).min(context.settings.size.height);
         *rows = if rows.start >= rows.end { rows.clone() } else { reach };
+        let within = |row: u32| row.max(hull.rows[0].into()).min(hull.rows[1].into()) as u16;
+        let area = PixelRect { rows: [within(rows.start), within(rows.end)], ..hull };
+        let put: &mut dyn FnMut(&Edge) = &mut |edge| smoother.put(edge, &area);
         let mut rest = bins.count().and_then(|count| entries.get(..count.into())).unwrap_or_default();
         let mut complete = *binned;
         for placed in context.meshes().rev() {
             let Some(outlined) = context.outlined(&placed) else { continue };
-            let of_mesh = rest.iter().take_while(|entry| placed.has(entry.key().triangle())).count();
-            let (own, others) = (rest.get(..of_mesh).unwrap_or_default(), rest.get(of_mesh..).unwrap_or_default());
-            rest = others;
             let words = placed.mesh.triangles.div_ceil(32) as usize;
-            let Ok((faces, _)) = <[u32]>::mut_from_prefix_with_elems(depth.as_mut_bytes(), words) else {
-                complete = false;
-                continue;
-            };
+            let faces = <[u32]>::mut_from_prefix_with_elems(depth.as_mut_bytes(), words).map_or(&mut [][..], |(faces, _)| faces);
             faces.fill(0);
-            let index = |entry: &Entry| entry.key().triangle().wrapping_sub(placed.first_triangle) as usize;
-            own.iter().for_each(|entry| find::add(faces, index(entry)));
-            let faces = &*faces;
-            for entry in own {
-                outlined.edges(index(entry), |triangle| find::has(faces, triangle), &mut |edge| {
-                    if edge.meets(&hull) {
-                        smoother.put(edge, rows.clone());
-                    }
-                });
+            // The list begins with the entries of this mesh.
+            let count = find::collect(faces, rest, placed.first_triangle, placed.mesh.triangles);
+            let (own, others) = (rest.get(..count).unwrap_or_default(), rest.get(count..).unwrap_or_default());
+            rest = others;
+            if faces.len() == words {
+                outlined.outlines(own, placed.first_triangle, faces, put);
+            } else {
+                complete = false;
             }
         }
-        context.each_cut(&mut |edge| smoother.put(edge, rows.clone()));
+        context.each_cut(put);
         stats.edges = smoother.close(complete);
     }
 

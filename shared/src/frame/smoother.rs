@@ -10,7 +10,10 @@ use crate::{
         walk::Window,
     },
     frame::context::Context,
-    geometry::bin::{Bins, Entry},
+    geometry::{
+        bin::{Bins, Entry},
+        pixel_rect::PixelRect,
+    },
     memory::{Smoothing, halves},
     pixel::{Pixel, colour::colour, gamma::Gamma},
     scene::Outlines,
@@ -60,17 +63,13 @@ impl<'r> Smoother<'r> {
         Self { edges: &[], room: edges, count: 0, bins, entries, marks, places, colours, held: None }
     }
 
-    /// Adds an edge that may mark pixels of these `rows`.
-    pub(crate) fn put(&mut self, edge: &Edge, rows: Range<u32>) {
-        let [top, bottom] = edge.rows();
-        let (top, bottom) = (top.max(rows.start as i32), bottom.min(rows.end as i32));
-        if top >= bottom {
-            return;
-        }
+    /// Adds an edge, if it may mark pixels of `area`.
+    pub(crate) fn put(&mut self, edge: &Edge, area: &PixelRect) {
+        let Some(rows) = edge.rows_in(area) else { return };
         match (self.room.get_mut(self.count), &mut self.bins) {
             (Some(room), Some(bins)) => {
                 *room = *edge;
-                bins.push(self.entries, self.count as u32, false, [top as u32, bottom as u32]);
+                bins.push(self.entries, self.count as u32, false, rows);
             }
             _ => self.bins = None,
         }
@@ -159,17 +158,8 @@ impl<'r> Smoother<'r> {
         let Self { edges, bins, entries, marks, places, .. } = self;
         let count = (rows.end - rows.start) as usize * band.width;
         let marks = marks.get_mut(..count).unwrap_or_default();
-        let mut window = Window {
-            width: band.width as i32,
-            rows: [band.known.start as i32, band.known.end as i32],
-            depth: band.depth,
-            top: rows.start as i32,
-            bottom: rows.end as i32,
-            lines: context.settings.outlines.is_some(),
-            marks,
-            places,
-            count: 0,
-        };
+        let known = (&band.known, band.depth);
+        let mut window = Window::new(band.width, known, rows, context.settings.outlines.is_some(), marks, places);
         match bins {
             Some(bins) if by_bins => {
                 bins.skip(entries, rows.start);
@@ -189,12 +179,9 @@ impl<'r> Smoother<'r> {
                 }
             }),
         }
-        let fits = window.count <= window.places.len();
-        if !fits {
-            window.marks.fill(0);
-        }
-        self.count = window.count;
-        fits
+        let count = window.close();
+        self.count = count.unwrap_or(0);
+        count.is_some()
     }
 
     /// Mixes the marked pixels of `rows`, or draws lines there.
