@@ -216,7 +216,8 @@ impl<'w> Window<'w> {
         if first >= end {
             return;
         }
-        let range = i32::from(range);
+        // A line needs no pixel of its surface beside it: a part thinner than a pixel has none in many columns.
+        let range = i32::from(if *lines { u16::MAX } else { range });
         let length = (m1 - m0) as u32;
         // 2^32 / length, shifted right by `zeros`.
         let zeros = length.leading_zeros().wrapping_sub(16) & 15;
@@ -258,11 +259,10 @@ impl<'w> Window<'w> {
                     && i32::from(outer) <= (least >> 12).wrapping_add(nearer)
                 {
                     let behind = (minor & (ONE - 1)) - HALF;
-                    if !*lines {
-                        notes.note(&slant, at, behind);
-                    } else if inner > 0 {
-                        // Lines need a surface beside them. Rows that no triangle reaches have no depth.
+                    if *lines {
                         notes.line(minor_stride, at, behind);
+                    } else {
+                        notes.note(&slant, at, behind);
                     }
                 }
             }
@@ -336,5 +336,30 @@ mod tests {
             }
         }
         assert!(through_centres > 500, "{through_centres}");
+    }
+
+    /// A line is drawn in all columns whose centre its edge passes, whether a surface is beside it or not, unless something in front hides it.
+    #[test]
+    fn lines_have_no_gaps_where_no_surface_is_drawn() {
+        for (bx, by) in [(900, 300), (300, 900), (120, 700), (720, 90), (500, 500), (880, 497)] {
+            let place = |x, y| -> Place { [x, y, 1000 << 12] };
+            let edge = Edge::new([place(500, 497), place(bx, by)], 0, 0).unwrap();
+            for nearest in [0u16, 900, 1100] {
+                let depth = [nearest; (SIDE * SIDE) as usize];
+                let (mut marks, mut places) = ([0u8; (SIDE * SIDE) as usize], [0; (SIDE * SIDE) as usize]);
+                let mut window = Window::new(SIDE as usize, (&(0..SIDE as u32), &depth), &(0..SIDE as u32), true, &mut marks, &mut places);
+                window.walk(&edge);
+                let is_flat = (bx - 500i32).abs() >= (by - 497i32).abs();
+                let (from, to) = if is_flat { (500.min(bx), 500.max(bx)) } else { (497.min(by), 497.max(by)) };
+                for major in 0..SIDE {
+                    let column = (0..SIDE).map(|minor| if is_flat { minor * SIDE + major } else { major * SIDE + minor });
+                    let light: u32 = column.map(|at| u32::from(marks[at as usize])).sum();
+                    let passes = from < 16 * major + 8 && 16 * major + 8 < to;
+                    let at_end = from == 16 * major + 8 || 16 * major + 8 == to;
+                    let expected = if passes && nearest < 1000 { 255 } else { 0 };
+                    assert!(at_end || light == expected, "to {bx}, {by}, depth {nearest}, column {major}: {light}");
+                }
+            }
+        }
     }
 }

@@ -305,11 +305,12 @@ impl<'r> FrameRows<'r> {
     pub(crate) fn find_edges(&mut self, context: &Context<'_>) {
         let Self { bins, binned, entries, depth, smoother, rows, stats, .. } = self;
         let hull = context.settings.touched(&context.region.hull());
-        // An edge changes pixels beside those of triangles.
+        // An edge changes pixels beside those of triangles, and a line also rows in which no triangle has a pixel.
         let reach = rows.start.saturating_sub(1)..rows.end.saturating_add(1).min(context.settings.size.height);
         *rows = if rows.start >= rows.end { rows.clone() } else { reach };
+        let lines = context.settings.outlines.is_some();
         let within = |row: u32| row.max(hull.rows[0].into()).min(hull.rows[1].into()) as u16;
-        let area = PixelRect { rows: [within(rows.start), within(rows.end)], ..hull };
+        let area = if lines { hull } else { PixelRect { rows: [within(rows.start), within(rows.end)], ..hull } };
         let put: &mut dyn FnMut(&Edge) = &mut |edge| smoother.put(edge, &area);
         let mut rest = bins.count().and_then(|count| entries.get(..count.into())).unwrap_or_default();
         let mut complete = *binned;
@@ -330,6 +331,10 @@ impl<'r> FrameRows<'r> {
         }
         context.each_cut(put);
         stats.edges = smoother.close(complete);
+        if lines {
+            let of_lines = smoother.rows().unwrap_or_else(|| hull.rows());
+            *rows = if rows.start >= rows.end { of_lines } else { rows.start.min(of_lines.start)..rows.end.max(of_lines.end) };
+        }
     }
 
     /// Draws all triangles in the band from row `top` to row `bottom`, whose pixels hold the background. Only these `columns` are needed. The depth of

@@ -84,6 +84,11 @@ impl<'r> Smoother<'r> {
         self.count as u32
     }
 
+    /// The rows in which edges may mark pixels, if all edges are listed.
+    pub(crate) fn rows(&self) -> Option<Range<u32>> {
+        self.bins.as_ref().map(Bins::rows)
+    }
+
     /// Divides the memory between two processors.
     pub(crate) fn in_two(self, divides: bool) -> [Self; 2] {
         let Self { edges, room: _, count, bins, entries, marks, places, colours, .. } = self;
