@@ -254,6 +254,20 @@ fn phong_is_as_exact_in_any_material() {
     }
 }
 
+/// Under two lights, loops of methods that hold levels of light draw a coloured metal in three channels, and others in one.
+#[test]
+fn a_metal_is_walked_as_its_method_does_it() {
+    let scene = scene::load("teapot").expect("a built-in scene");
+    let mut records = Records::of(&scene.stream.parse().expect("a stream"));
+    records.lights = vec![records.lights[0]; 2];
+    let stream = records.written().expect("a stream");
+    let reference = Reference::new(stream.parse().expect("a stream"), (80, 60), 0).expect("something to see");
+    for shader in [Shader::PHONG, Shader::AUTO, Shader::SQRT6, Shader::GOURAUD] {
+        let error = reference.compare(shader).expect("a comparison").arithmetic.max;
+        assert!(error < 0.5, "{}: {error}", shader.name());
+    }
+}
+
 #[test]
 fn figures_are_those_of_pictures_compared_by_hand() {
     let scene = scene::load("triangle").expect("a built-in scene");
@@ -348,10 +362,10 @@ fn glass(sixteenths: u8) -> StreamBytes {
     records.written().expect("a stream")
 }
 
-/// A teapot of glass and of holes, in turns, as squares of a texture that lies across it.
+/// A teapot of glass and of holes, or of red glass, in turns, as squares of a texture that lies across it.
 fn pierced(hole: u8) -> StreamBytes {
     let mut records = parts("teapot");
-    records.colours = vec![Colour::new([255; 3]), Colour { hole, ..Colour::new([255; 3]) }];
+    records.colours = vec![Colour::new([255; 3]), Colour { hole, ..Colour::new([100, 20, 20]) }];
     records.texels = (0..64).map(|texel| ((texel / 8 + texel) % 2) as u8).collect();
     records.textures = vec![Texture { size: [3, 3], palette: 0, has_holes: hole }];
     let [mesh] = &mut records.meshes[..] else { panic!("one mesh") };
@@ -364,10 +378,10 @@ fn pierced(hole: u8) -> StreamBytes {
     records.written().expect("a stream")
 }
 
-/// What is seen through surfaces is judged as exactly as all else, for each method.
+/// What is seen through surfaces, and texels, are judged as exactly as all else, for each method.
 #[test]
 fn glass_and_holes_are_judged() {
-    for (kind, stream, least) in [("glass", glass(9), 2_000), ("holes", pierced(1), 500)] {
+    for (kind, stream, least) in [("glass", glass(9), 2_000), ("holes", pierced(1), 500), ("texels", pierced(0), 500)] {
         let stream = stream.parse().expect("a stream");
         let reference = Reference::new(stream, SEEN_THROUGH, 0).expect("something to see");
         let mut methods = 0;

@@ -5,10 +5,11 @@ use embedded_graphics_core::geometry::Size;
 use microphong::{
     Stream,
     format::{BIAS, CHANNEL, Intensity, RAMP, WALK},
-    method::{Highlight, Reflectance},
+    method::{Facts, Reflectance},
     pixel::{Channels, Gamma, Pixel, PixelFormat, ramps::Rounded},
-    stream::record::{HAS_COLOURS, HAS_TEXTURE, Material, Mesh},
+    stream::record::{HAS_COLOURS, HAS_TEXTURE, Mesh},
 };
+use microphong_oracle::{Facet, Frame, Levels};
 use microphong_render::{
     choices::{self, Told},
     render::{self, Style},
@@ -107,15 +108,34 @@ impl Pixel for Fine {
     }
 }
 
-/// Whether [`picture`] walks one level for all channels of a material.
-#[must_use]
-pub fn is_one_channel(stream: &Stream<'_>, material: &Material) -> bool {
-    let mut reflectance = Box::new(Reflectance::EMPTY);
-    let has_colours = |mesh: &&Mesh| mesh.flags & (HAS_COLOURS | HAS_TEXTURE) != 0;
-    let is_coloured =
-        stream.meshes.iter().filter(has_colours).any(|mesh| stream.materials.get(usize::from(mesh.material)) == Some(material));
-    reflectance.fill(Channels::of::<Fine>(), stream.header.ambient, material, stream.lights, (Highlight::Half, false), is_coloured);
-    !reflectance.three_channels()
+/// The materials of which [`picture`] walks one level for all channels, in the stream's order. By default there are none.
+#[derive(Clone, Debug, Default)]
+pub struct Walked(Vec<bool>);
+
+impl Walked {
+    /// The materials of a stream as a method walks them. Some methods have loops for three channels alone.
+    #[must_use]
+    pub fn of(stream: &Stream<'_>, method: &Facts) -> Self {
+        let mut reflectance = Box::new(Reflectance::EMPTY);
+        let has_colours = |mesh: &&Mesh| mesh.flags & (HAS_COLOURS | HAS_TEXTURE) != 0;
+        let is_coloured = |index: usize| stream.meshes.iter().filter(has_colours).any(|mesh| usize::from(mesh.material) == index);
+        let highlight = (method.highlight, method.highlight_levels);
+        let is_one_channel = |(index, material)| {
+            reflectance.fill(Channels::of::<Fine>(), stream.header.ambient, material, stream.lights, highlight, is_coloured(index));
+            !reflectance.three_channels()
+        };
+        Self(stream.materials.iter().enumerate().map(is_one_channel).collect())
+    }
+
+    /// The light of a facet as [`picture`] has it: that of the brightest channel in all three, where one level is walked. Approximation may lift
+    /// others above it.
+    #[must_use]
+    pub fn shown(&self, frame: &Frame, facet: &Facet, light: Levels) -> Levels {
+        if self.0.get(facet.material) != Some(&true) {
+            return light;
+        }
+        [frame.only_channel(facet).map_or(light.into_iter().fold(0.0, f64::max), |channel| light[channel]); 3]
+    }
 }
 
 /// The error budget of [`picture`], in 1/255.

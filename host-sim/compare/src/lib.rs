@@ -19,10 +19,11 @@ use edges::Edges;
 pub use edges::Jumps;
 use embedded_graphics_core::{geometry::Size, pixelcolor::Rgb565};
 use figures::Spread;
+use level::Walked;
 use microphong::{Stream, renderer::check};
-use microphong_oracle::{self as oracle, Facet, Frame, Levels, MOST_OUTCOMES};
+use microphong_oracle::{self as oracle, Facet, Frame, Levels, Shade, Unsupported};
 use microphong_render::{
-    choices::{self, Choices},
+    choices::{self, Choices, Chosen},
     render::{self, Format, Settings, Style},
     shader::Shader,
 };
@@ -40,8 +41,6 @@ pub struct Reference<'s> {
     number: u32,
     perspective_correct: bool,
     frame: Frame,
-    /// Per material: the core draws it in one channel.
-    one_channel: Vec<bool>,
     /// Per pixel what may be seen there.
     sights: Vec<Vec<Sight>>,
     /// The facet of each sample.
@@ -144,10 +143,8 @@ impl<'s> Reference<'s> {
         let phong = samples.shade(&frame, &|facet| Ok(oracle::phong(&frame, facet)))?;
         let shown: HashSet<u32> = facets.iter().copied().collect();
         let edges = Edges::new(&frame, |facet| shown.contains(&(facet as u32)));
-        let one_channel = stream.materials.iter().map(|material| level::is_one_channel(&stream, material)).collect();
         let (window, row) = (Window::default(), 0);
-        let mut reference =
-            Self { stream, number, perspective_correct, frame, one_channel, sights, facets, samples, phong, edges, window, row };
+        let mut reference = Self { stream, number, perspective_correct, frame, sights, facets, samples, phong, edges, window, row };
         let levels: Vec<_> = (0..reference.sights.len()).map(|pixel| reference.level_of(pixel)).collect();
         (reference.window, reference.row) = ends(&levels, reference.frame.size).context("no pixel shows a triangle")?;
         Ok(reference)
@@ -179,7 +176,7 @@ impl<'s> Reference<'s> {
 
     fn level_of(&self, pixel: usize) -> Option<f64> {
         let sight = self.sights.get(pixel)?.first().filter(|sight| !sight.is_empty())?;
-        Some(brightest(self.light(pixel, sight, &self.phong)))
+        Some(brightest(self.light(pixel, sight, &self.phong, &Walked::default())))
     }
 
     /// Phong's picture in 8 bits per channel, row by row from the top.
@@ -208,38 +205,37 @@ impl<'s> Reference<'s> {
         &self.frame.facets[self.facets[sample] as usize]
     }
 
-    /// The levels of a facet as [`level::picture`] has them: those of the brightest channel for all, where the core draws one.
-    fn walked(&self, facet: &Facet, levels: Levels) -> Levels {
-        if self.one_channel.get(facet.material) == Some(&true) { [brightest(levels); 3] } else { levels }
-    }
-
     /// The light of a sight of a pixel, as [`level::picture`] has it, if samples have these levels.
-    fn light(&self, pixel: usize, sight: &[usize], levels: &[Levels]) -> Levels {
-        self.lights(pixel, sight, &|sample| vec![levels[sample]])[0]
+    fn light(&self, pixel: usize, sight: &[usize], levels: &[Levels], walked: &Walked) -> Levels {
+        self.lights(pixel, sight, &|sample| vec![levels[sample]], walked)[0]
     }
 
-    /// The lights that a sight of a pixel may have if each of its samples has one of several `outcomes`. There are at most [`MOST_OUTCOMES`].
-    fn lights(&self, pixel: usize, sight: &[usize], outcomes: &dyn Fn(usize) -> Vec<Levels>) -> Vec<Levels> {
-        sight.iter().fold(vec![self.frame.background(self.row_of(pixel))], |behind, &sample| {
-            let (facet, surfaces) = (self.facet(sample), outcomes(sample));
-            let over = |&surface: &Levels| behind.iter().map(move |&behind| facet.over(self.walked(facet, surface), behind));
-            surfaces.iter().flat_map(over).take(MOST_OUTCOMES).collect()
-        })
+    /// The lights that a sight of a pixel may have if each of its samples has one of several `outcomes`.
+    fn lights(&self, pixel: usize, sight: &[usize], outcomes: &dyn Fn(usize) -> Vec<Levels>, walked: &Walked) -> Vec<Levels> {
+        let seen = sight.iter().map(|&sample| {
+            let shown = |light| walked.shown(&self.frame, self.facet(sample), light);
+            (self.facets[sample], outcomes(sample).into_iter().map(shown).collect())
+        });
+        self.frame.mixtures(self.row_of(pixel), seen)
     }
 
     /// The sight of a pixel whose Phong shading is closest to these levels, and the difference. Of triangles at equal depth the integers may show
     /// any.
-    fn best(&self, pixel: usize, level: Levels) -> Option<(&Sight, f64)> {
-        let errors = self.drawn(pixel).map(|sight| (sight, error(level, self.light(pixel, sight, &self.phong))));
+    fn best(&self, pixel: usize, level: Levels, walked: &Walked) -> Option<(&Sight, f64)> {
+        let errors = self.drawn(pixel).map(|sight| (sight, error(level, self.light(pixel, sight, &self.phong, walked))));
         errors.min_by(|a, b| a.1.abs().total_cmp(&b.1.abs()))
     }
 
     /// All results that a method may have for a sample of a pixel, see [`oracle::outcomes`].
     fn outcomes(&self, sample: usize, pixel: usize, name: &str) -> Vec<Levels> {
-        let width = self.frame.size.0 as usize;
-        let centre = [pixel % width, pixel / width].map(|c| c as f64 + 0.5);
         let facet = self.facet(sample);
-        oracle::outcomes(name, &self.frame, facet, centre, self.frame.undecided(facet)).unwrap_or_default()
+        oracle::outcomes(name, &self.frame, facet, self.centre(pixel), self.frame.undecided(facet)).unwrap_or_default()
+    }
+
+    /// The centre of a pixel on the screen.
+    fn centre(&self, pixel: usize) -> [f64; 2] {
+        let width = self.frame.size.0 as usize;
+        [pixel % width, pixel / width].map(|c| c as f64 + 0.5)
     }
 
     /// [`Comparison::total`] only, which is quick.
@@ -250,7 +246,8 @@ impl<'s> Reference<'s> {
         let size = Size::new(self.frame.size.0, self.frame.size.1);
         let style = Style { perspective_correct: self.perspective_correct, ..shader.into() };
         let levels = level::picture(self.stream, size, style, self.number)?;
-        let errors: Vec<_> = (0..).zip(levels).filter_map(|(pixel, level)| Some(self.best(pixel, level?)?.1)).collect();
+        let walked = Walked::of(&self.stream, shader.facts());
+        let errors: Vec<_> = (0..).zip(levels).filter_map(|(pixel, level)| Some(self.best(pixel, level?, &walked)?.1)).collect();
         Spread::of(&errors).with_context(|| format!("{} has drawn nothing", shader.name()))
     }
 
@@ -271,10 +268,9 @@ impl<'s> Reference<'s> {
         let told = choices::by::<Rgb565>(shader, self.stream, size, perspective_correct, self.number)?;
         // Of a method that chooses, what it has chosen for each triangle.
         let chosen = |facet: &Facet| told.as_ref()?.ways.get(facet.id as usize).copied().flatten();
-        let shade = |facet| {
-            chosen(facet).map_or_else(|| oracle::method(name, &self.frame, facet), |chosen| Ok(oracle::chosen(&self.frame, facet, chosen)))
-        };
+        let shade = |facet| shaded(&self.frame, facet, name, chosen(facet));
         let real = self.samples.shade(&self.frame, &shade)?;
+        let walked = Walked::of(&self.stream, shader.facts());
 
         let mut errors = vec![None; integers.len()];
         let (mut total, mut method, mut arithmetic) = (Vec::new(), Vec::new(), Vec::new());
@@ -285,20 +281,28 @@ impl<'s> Reference<'s> {
                 unmatched += usize::from(!self.sights[pixel].iter().any(Vec::is_empty));
                 continue;
             };
-            let (Some(exact), Some((sight, difference))) = (self.drawn(pixel).next(), self.best(pixel, level)) else {
+            let (Some(exact), Some((sight, difference))) = (self.drawn(pixel).next(), self.best(pixel, level, &walked)) else {
                 unmatched += 1;
                 continue;
             };
             errors[pixel] = Some(difference);
             total.push(difference);
-            method.push(error(self.light(pixel, exact, &real), self.light(pixel, exact, &self.phong)));
+            method.push(error(self.light(pixel, exact, &real, &walked), self.light(pixel, exact, &self.phong, &walked)));
             let same = |outcomes: &dyn Fn(usize) -> Vec<Levels>| {
-                let lights = self.drawn(pixel).flat_map(|sight| self.lights(pixel, sight, outcomes));
+                let lights = self.drawn(pixel).flat_map(|sight| self.lights(pixel, sight, outcomes, &walked));
                 lights.map(|light| error(level, light).abs()).fold(f64::INFINITY, f64::min)
             };
             let mut off = same(&|sample| vec![real[sample]]);
+            if off > UNDECIDED {
+                // The place in a texture may be rounded to the texel beside.
+                let beside = |sample: usize| -> Vec<Levels> {
+                    let light = |facet: Facet| Some(shaded(&self.frame, &facet, name, chosen(&facet)).ok()?(self.centre(pixel)));
+                    [real[sample]].into_iter().chain(self.facet(sample).within(self.centre(pixel)).into_iter().filter_map(light)).collect()
+                };
+                off = same(&beside);
+            }
             if off > UNDECIDED && oracle::decides(name) {
-                off = same(&|sample| self.outcomes(sample, pixel, name));
+                off = off.min(same(&|sample| self.outcomes(sample, pixel, name)));
             }
             arithmetic.push(off);
             target[pixel] = self.shown(pixel, sight);
@@ -348,6 +352,11 @@ impl Window {
         let rows = picture.chunks_exact(width as usize).skip(self.rows.start as usize).take(self.height() as usize);
         rows.flat_map(|row| row.get(columns.clone()).unwrap_or_default()).copied().collect()
     }
+}
+
+/// The shading of a facet by a method in floating point, in the way that it has chosen if it chooses one.
+fn shaded<'f>(frame: &'f Frame, facet: &'f Facet, name: &str, chosen: Option<Chosen>) -> Result<Shade<'f>, Unsupported> {
+    chosen.map_or_else(|| oracle::method(name, frame, facet), |chosen| Ok(oracle::chosen(frame, facet, chosen)))
 }
 
 /// Number of pixels that stay free around the object.

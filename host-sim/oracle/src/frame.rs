@@ -19,6 +19,9 @@ use microphong_models::{
     vector::{V3, add, apply, cross, dot, length, scale, sub},
 };
 
+/// Largest number of lights that [`Frame::mixtures`] returns. Five times the largest number of outcomes of a method are fewer.
+pub const MOST_MIXTURES: usize = 1 << 11;
+
 /// All data on which a picture of one frame depends, in object space.
 #[derive(Clone, Debug)]
 pub struct Frame {
@@ -154,7 +157,18 @@ impl Frame {
     /// The light of a pixel of `row` in which these facets are seen, in the order of drawing, each with its own light.
     #[must_use]
     pub fn mixed(&self, row: u32, seen: impl IntoIterator<Item = (u32, Levels)>) -> Levels {
-        seen.into_iter().fold(self.background(row), |behind, (facet, light)| self.facets[facet as usize].over(light, behind))
+        self.mixtures(row, seen.into_iter().map(|(facet, light)| (facet, vec![light])))[0]
+    }
+
+    /// The lights that such a pixel may have if each facet has one of several lights: first the mixture of the first light of each. There are at most
+    /// [`MOST_MIXTURES`].
+    #[must_use]
+    pub fn mixtures(&self, row: u32, seen: impl IntoIterator<Item = (u32, Vec<Levels>)>) -> Vec<Levels> {
+        seen.into_iter().fold(vec![self.background(row)], |behind, (facet, lights)| {
+            let facet = &self.facets[facet as usize];
+            let over = |light: &Levels| behind.iter().map(|&behind| facet.over(*light, behind)).collect::<Vec<_>>();
+            lights.iter().flat_map(over).take(MOST_MIXTURES).collect()
+        })
     }
 
     /// A frame as [`Self::new`] makes it, in which methods take the point of the triangle that is seen. [`Self::new`] takes the point that divides

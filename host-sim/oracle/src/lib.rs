@@ -16,7 +16,7 @@ mod scene;
 mod texture;
 mod visible;
 
-pub use frame::{Facet, Frame};
+pub use frame::{Facet, Frame, MOST_MIXTURES};
 pub use light::phong;
 pub(crate) use method::angular;
 pub use method::{MOST_OUTCOMES, NAMES, Unsupported, chosen, decides, method, outcomes};

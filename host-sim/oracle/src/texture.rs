@@ -84,11 +84,11 @@ impl Facet {
         Certainty::of(exactly, is_covered.any(|other| other != exactly))
     }
 
-    /// This facet in each of the colours that the texel which is seen at a point of the screen may have, the exact one first; none if it has no
-    /// texture.
+    /// This facet in each of the colours that the texel which is seen at a point of the screen may have, the exact one first; the facet itself if it
+    /// has no texture.
     #[must_use]
     pub fn within(&self, p: [f64; 2]) -> Vec<Self> {
-        let Some(texture) = &self.texture else { return Vec::new() };
+        let Some(texture) = &self.texture else { return vec![self.clone()] };
         let mut colours: Vec<V3> = Vec::new();
         for colour in texture.near(self.place(texture, p)).flatten() {
             if !colours.contains(&colour) {
