@@ -9,7 +9,10 @@ use crate::{
 };
 use embedded_graphics_core::geometry::Size;
 use microphong::format::ErrorBudget;
-use microphong_compare::level;
+use microphong_compare::{
+    UNDECIDED,
+    level::{self, Walked},
+};
 use microphong_models::vector::length;
 use microphong_oracle::{Frame, Shade, phong};
 use microphong_render::{render::Style, shader::Shader};
@@ -93,6 +96,7 @@ pub fn judge(case: &Case) -> Option<Found> {
     let picture = |shader| level::picture(stream, Size::new(width, height), Style { shader, ..case.style }, number).ok();
     let (drawn, by_phong) = (picture(case.style.shader)?, picture(Shader::PHONG)?);
     let right = allowed(level::budget(&stream), frame.lights.len());
+    let walked = Walked::of(&stream, case.style.shader.facts());
     let mut shades: HashMap<u32, (Shade<'_>, bool)> = HashMap::new();
     let mut worst = 0f64;
     for (pixel, sights) in (0..).zip(frame.visible()) {
@@ -111,7 +115,12 @@ pub fn judge(case: &Case) -> Option<Found> {
             let (shade, _) = shades.entry(candidate).or_insert_with(|| (phong(&frame, facet), false));
             let is_clear = frame.is_constant() && length(facet.normal(facet.weights(point))) >= SHORT;
             error = error.min(match (is_clear, same) {
-                (true, _) => arithmetic::error(&frame, facet, levels, (point, shade(point)), |facet| Some(phong(&frame, facet)(point))),
+                (true, _) => {
+                    let off = |light| arithmetic::difference(levels, walked.shown(&frame, facet, light));
+                    let exactly = off(shade(point));
+                    let beside = || facet.within(point).into_iter().map(|facet| off(phong(&frame, &facet)(point)));
+                    if exactly <= UNDECIDED { exactly } else { beside().fold(exactly, f64::min) }
+                }
                 (false, true) => 0.0,
                 (false, false) => f64::INFINITY,
             });

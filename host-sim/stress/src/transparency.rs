@@ -1,8 +1,13 @@
 //! Random transparent meshes and holes in textures.
 
-use crate::{random::Random, records::Records};
+use crate::{
+    case::Case,
+    random::Random,
+    records::Records,
+    scenes::{self, Hard, Wishes},
+};
 use microphong::stream::record::{Mesh, TRANSPARENCY_SHIFT};
-use microphong_models::bytes::StreamBytes;
+use microphong_models::{bytes::StreamBytes, look::Surface, mesh::Submesh};
 
 /// In about a quarter of all cases, makes some meshes of a stream transparent, and some colours of its textures holes. All else of the stream is the same.
 pub(crate) fn sometimes(random: &mut Random, stream: StreamBytes) -> StreamBytes {
@@ -51,15 +56,26 @@ fn pierce(random: &mut Random, records: &mut Records) {
     records.colours.iter_mut().for_each(|colour| colour.hole = u8::from(random.once_in(share)));
 }
 
+/// A scene in which triangles of six materials lie among one another, of which four are transparent, drawn in a random way; `None` if it would not
+/// make a valid stream.
+pub(crate) fn sheets(random: &mut Random, hard: Hard) -> Option<Case> {
+    let wishes = Wishes { closed: false, unclipped: true, triangles: 120, hard };
+    let width = random.between(20.0, 100.0);
+    let size = scenes::size(random, width);
+    let mut mesh = scenes::mesh(random, wishes);
+    let material = |random: &mut Random| Submesh { material: random.pick(0..6) as usize, ..Submesh::default() };
+    mesh.submeshes = mesh.triangles.iter().map(|_| material(random)).collect();
+    let mut look = scenes::look(random, &mesh, size, wishes);
+    let transparency = |random: &mut Random, material: i32| if material < 2 { 0.0 } else { random.between(0.05, 0.95) };
+    look.surfaces = (0..6).map(|k| Surface { transparency: transparency(random, k), ..scenes::surface(random, hard.steep) }).collect();
+    scenes::drawn(random, &mesh, size, &look)
+}
+
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::{
-        arithmetic::{LIMIT, PER_LIGHT},
-        scenes::{self, Hard, Wishes},
-    };
+    use crate::arithmetic::{LIMIT, PER_LIGHT};
     use microphong_compare::{Comparison, Reference};
-    use microphong_models::{look::Surface, mesh::Submesh};
     use microphong_render::shader::Shader;
 
     /// Many cases have transparent meshes, and some have holes.
@@ -78,29 +94,14 @@ mod tests {
         assert!(transparent > 40 && holes > 4, "{transparent} {holes}");
     }
 
-    /// A random scene in which triangles of six materials lie among one another, of which four are transparent, and the size of its picture.
-    fn sheets(random: &mut Random) -> Option<(StreamBytes, [u32; 2])> {
-        let wishes = Wishes { closed: false, unclipped: true, triangles: 120, hard: Hard::default() };
-        let width = random.between(20.0, 100.0);
-        let size = scenes::size(random, width);
-        let mut mesh = scenes::mesh(random, wishes);
-        let material = |random: &mut Random| Submesh { material: random.pick(0..6) as usize, ..Submesh::default() };
-        mesh.submeshes = mesh.triangles.iter().map(|_| material(random)).collect();
-        let mut look = scenes::look(random, &mesh, size, wishes);
-        let transparency = |random: &mut Random, material: i32| if material < 2 { 0.0 } else { random.between(0.05, 0.95) };
-        look.surfaces = (0..6).map(|k| Surface { transparency: transparency(random, k), ..scenes::surface(random, false) }).collect();
-        let parts = scenes::parts(random, &mesh, &look)?;
-        Some((look.stream(&parts).ok()?, size))
-    }
-
-    /// Pixels of methods that interpolate light show the sheets that the reference in floating point shows, in the same order. Rounding does not grow
-    /// by mixing.
+    /// Pixels of methods that interpolate light, which are right everywhere, show the sheets that the reference in floating point shows, in the same
+    /// order. Rounding does not grow by mixing.
     #[test]
     fn sheets_are_mixed_as_in_the_reference() {
         let (mut scenes, mut pixels) = (0, 0);
         for number in 0..400 {
             let mut random = Random::new(6, number);
-            let Some((stream, [width, height])) = sheets(&mut random) else { continue };
+            let Some(Case { stream, size: [width, height], .. }) = sheets(&mut random, Hard::default()) else { continue };
             let stream = stream.parse().unwrap();
             let of = if random.once_in(3) { Reference::perspective_correct } else { Reference::new };
             let Ok(reference) = of(stream, (width, height), 0) else { continue };
