@@ -440,6 +440,34 @@ fn missing_files_and_unwritable_outputs() {
     place.fails(&["render", "triangle", "-o", "good.obj/frames/"], 1, &["good.obj/frames"]);
 }
 
+/// A picture has the name of its model, and so has many a texture, which lies beside the model. No file that is read is replaced.
+#[test]
+fn files_of_a_model_are_never_overwritten() {
+    let place = Place::new();
+    let texture = fs::read(Path::new(env!("CARGO_MANIFEST_DIR")).join("data/red.jpg")).expect("an image");
+    let places = "vt 0 0\nvt 1 0\nvt 0 1\n";
+    place.file("fox.obj", format!("mtllib fox.mtl\nv 0 0 0\nv 1 0 0\nv 0 1 0\n{places}usemtl fur\nf 1/1 2/2 3/3\n"));
+    place.file("fox.mtl", "newmtl fur\nmap_Kd fox.png\n").file("fox.png", &texture);
+    place.file(
+        "scene.toml",
+        "frames = 1\n[camera]\nat = [0, 0, 4]\n[[mesh]]\nname = \"fox\"\nfile = \"fox.obj\"\n[[object]]\nmesh = \"fox\"\n",
+    );
+    let model = ["fox.obj", "fox.mtl", "fox.png"].map(|name| (name, fs::read(place.0.path().join(name)).expect("a file of the model")));
+    for (name, _) in &model {
+        place.fails(&["convert", "fox.obj", "-o", name], 2, &[name, "overwritten", "-o"]);
+        place.fails(&["convert", "scene.toml", "-o", name], 2, &[name, "overwritten", "-o"]);
+    }
+    place.fails(&["render", "fox.obj"], 2, &["fox.png", "overwritten", "-o"]);
+    place.fails(&["render", "fox.obj", "-o", "./fox.png"], 2, &["fox.png", "overwritten", "-o"]);
+    for (name, bytes) in model {
+        assert!(fs::read(place.0.path().join(name)).expect("a file of the model") == bytes, "{name}");
+    }
+    place.succeeds(&["render", "fox.obj", "--size", "32x24", "-o", "picture.png"]);
+    place.succeeds(&["render", "fox.obj", "--size", "32x24", "-o", "picture.png"]);
+    // The texture is not read.
+    place.succeeds(&["render", "fox.obj", "--size", "32x24", "--colours", "none"]);
+}
+
 /// Links, devices and pipes stay what they are.
 #[cfg(unix)]
 #[test]

@@ -4,6 +4,7 @@
 
 use crate::number::grouped;
 use anyhow::{Context, Result, bail, ensure};
+use microphong_render::output;
 use std::{
     fmt,
     fs::{self, File},
@@ -29,6 +30,7 @@ pub(crate) fn read(path: &Path) -> Result<Vec<u8>> {
 fn limited(path: &Path, largest: u64) -> Result<Vec<u8>> {
     let place = || format!("cannot read {}", path.display());
     let mut file = File::open(path).with_context(place)?;
+    output::keep(path);
     let mut bytes = Vec::new();
     // A device has no length: what is read counts. There is never room for more than is allowed.
     loop {

@@ -1,15 +1,40 @@
-//! Output files that are complete or do not exist.
+//! Output files that are complete or do not exist, and that replace no file which the program has read.
 //!
 //! A file has no name while it is written, so if the program ends, nothing of it stays. Linux gives a complete file its name in one step. If an older
 //! file has this name, two steps are needed: first a name beside it, then the exchange. On other systems the file is copied to the name. If the
 //! program ends between two steps, a file that begins with `.microphong-` stays.
 
-use anyhow::{Context, Result};
+use anyhow::{Context, Result, ensure};
 use std::{
+    collections::BTreeSet,
+    fmt,
     fs::{self, File, Permissions},
     io::{self, BufWriter, Error, ErrorKind, IntoInnerError, Seek, Write},
     path::{Path, PathBuf},
+    sync::{Mutex, PoisonError},
 };
+
+/// The real paths of the files that the program has read.
+static READ: Mutex<BTreeSet<PathBuf>> = Mutex::new(BTreeSet::new());
+
+/// Keeps a file that the program reads: no [`Output`] replaces it. The texture of a model often has the name of the picture of the model.
+pub fn keep(path: &Path) {
+    if let Ok(path) = path.canonicalize() {
+        READ.lock().unwrap_or_else(PoisonError::into_inner).insert(path);
+    }
+}
+
+/// The error for a name that a file has which the program has read.
+#[derive(Debug)]
+pub struct Kept(PathBuf);
+
+impl fmt::Display for Kept {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        write!(f, "{} is read for this and would be overwritten; name another file with -o", self.0.display())
+    }
+}
+
+impl std::error::Error for Kept {}
 
 /// A file that is being written. It gets its name when it is complete, and is gone if it never is.
 ///
@@ -27,8 +52,10 @@ impl Output {
     /// Starts a file; before the work that fills it, so that a place that cannot be written is known at once.
     ///
     /// # Errors
-    /// When the directory is not there or cannot be written, or `path` is a directory.
+    /// [`Kept`] when the program has read a file of this name. Another error when the directory is not there or cannot be written, or `path` is a
+    /// directory.
     pub fn create(path: &Path) -> Result<Self> {
+        ensure!(!is_kept(path), Kept(path.to_owned()));
         let started = place(path).and_then(|place| match place {
             Place::Directly(file) => Ok((file, None)),
             Place::Name(name) => {
@@ -86,6 +113,12 @@ pub fn write(path: &Path, bytes: &[u8]) -> Result<()> {
 #[must_use]
 pub fn is_stdout(path: &Path) -> bool {
     cfg!(unix) && ["-", "/dev/stdout", "/dev/fd/1", "/proc/self/fd/1"].iter().any(|&name| path == Path::new(name))
+}
+
+/// Whether the program has read the regular file of this name.
+fn is_kept(path: &Path) -> bool {
+    let is_read = |path: &PathBuf| path.is_file() && READ.lock().unwrap_or_else(PoisonError::into_inner).contains(path);
+    path.canonicalize().is_ok_and(|path| is_read(&path))
 }
 
 /// Ways to write a file.

@@ -204,10 +204,6 @@ pub(crate) fn run(arguments: &Arguments) -> Result<Outcome> {
     let options = mesh_options::or_default(arguments.options.as_ref(), format)?;
     let counter = arguments.count.then(|| count::prepare(arguments.board.as_deref())).transpose()?;
     let target = arguments.output.clone().unwrap_or_else(|| source.with_extension("tri"));
-    let same = |path: &std::path::Path| path.canonicalize().ok();
-    if same(&target).is_some_and(|target| Some(target) == same(source)) {
-        return Err(Usage(format!("{} would overwrite the mesh; name another file with -o", target.display())).into());
-    }
     if scene::is_script(source) {
         return convert_script(arguments, (board.as_ref(), format), &target, counter.as_ref());
     }

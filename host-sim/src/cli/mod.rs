@@ -33,7 +33,7 @@ use absent::{bench, growth, size, verify};
 
 use anyhow::{Context, Result};
 use clap::{Parser, Subcommand};
-use microphong_sim::scene;
+use microphong_sim::{output::Kept, scene};
 use std::{ffi::OsString, process::ExitCode};
 
 /// Phong-quality shading for microcontrollers: convert meshes, draw them, and verify boards
@@ -136,7 +136,7 @@ pub(crate) fn main() -> ExitCode {
         return ExitCode::SUCCESS;
     }
     report::failure(&error);
-    let usage = error.is::<Usage>() || error.is::<scene::Unknown>() || error.is::<scene::Misplaced>();
+    let usage = error.is::<Usage>() || error.is::<scene::Unknown>() || error.is::<scene::Misplaced>() || error.is::<Kept>();
     if usage { ExitCode::from(2) } else { ExitCode::FAILURE }
 }
 
