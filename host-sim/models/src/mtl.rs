@@ -109,6 +109,9 @@ pub fn parse(text: &str) -> Result<Mtl> {
         }
         let ignored = match keyword.as_str() {
             "tf" => Some("colours of light that surfaces let through"),
+            "ka" | "kd" | "ke" | "ks" if words.clone().next().is_some_and(|word| OTHER_COLOURS.contains(&word)) => {
+                Some("colours that are spectra, or in XYZ")
+            }
             "map_kd" | "map_d" | "map_ke" => None,
             _ if keyword.starts_with("map_") || ["bump", "disp", "decal", "norm", "refl"].contains(&keyword.as_str()) => {
                 Some("textures other than those of colour")
@@ -155,19 +158,28 @@ pub fn parse(text: &str) -> Result<Mtl> {
     Ok(mtl)
 }
 
+/// Options of textures behind which is a word.
+const WITH_A_WORD: [&str; 3] = ["-colorspace", "-imfchan", "-type"];
+
 /// The file of a texture, behind its options, such as `-s 1 1 1`.
 fn file_of(statement: &str) -> String {
     let mut words = statement.split_whitespace().peekable();
-    while words.next_if(|word| word.starts_with('-')).is_some() {
+    while let Some(option) = words.next_if(|word| word.starts_with('-')) {
+        if WITH_A_WORD.contains(&option) {
+            words.next();
+        }
         while words.next_if(|word| word.parse::<f64>().is_ok() || ["on", "off"].contains(word)).is_some() {}
     }
     words.collect::<Vec<_>>().join(" ").trim_matches('"').to_owned()
 }
 
-/// Three numbers, or one for all channels; `None` where the colour is a spectrum.
+/// Words before colours that are not red, green and blue.
+const OTHER_COLOURS: [&str; 2] = ["spectral", "xyz"];
+
+/// Three numbers, or one for all channels; `None` where the colour is another.
 fn colour<'a>(mut words: impl Iterator<Item = &'a str>) -> Result<Option<V3>> {
     let red = words.next().context("a number is missing")?;
-    if ["spectral", "xyz"].contains(&red) {
+    if OTHER_COLOURS.contains(&red) {
         return Ok(None);
     }
     let red = share(red)?;
@@ -201,6 +213,29 @@ mod tests {
         assert_eq!(bare.texture.as_deref(), Some("bare wood.png"));
         assert_eq!(mtl.ignored.into_iter().collect::<Vec<_>>(), ["textures other than those of colour"]);
         assert_eq!([red, bare, matt].map(|material| material.transparency), [0.0, 0.0, 0.5]);
+    }
+
+    #[test]
+    fn files_of_textures_are_behind_options() {
+        for (statement, file) in [
+            ("a b.png", "a b.png"),
+            ("-s 1 1 1 -clamp on a.png", "a.png"),
+            ("-colorspace sRGB -o 0.1 a.png", "a.png"),
+            ("-imfchan r -bm 0.5 on.png", "on.png"),
+            ("-type sphere -mm 0 1 \"a b.png\"", "a b.png"),
+            ("-type", ""),
+        ] {
+            assert_eq!(file_of(statement), file, "{statement}");
+        }
+    }
+
+    #[test]
+    fn colours_of_other_kinds_are_said_to_be_left_out() {
+        for text in ["Kd spectral paint.rfl 1", "KA xyz 0.2 0.3 0.4", "Ks spectral a.rfl", "Ke xyz 1 1 1"] {
+            let Mtl { materials, ignored } = parse(&format!("newmtl a\n{text}\n")).unwrap();
+            assert_eq!(ignored.into_iter().collect::<Vec<_>>(), ["colours that are spectra, or in XYZ"], "{text}");
+            assert_eq!((materials[0].diffuse, materials[0].emission), (None, [0.0; 3]), "{text}");
+        }
     }
 
     #[test]

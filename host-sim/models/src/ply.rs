@@ -226,6 +226,7 @@ fn plain(error: &ParseError, is_text: bool) -> anyhow::Error {
     let why = message.lines().rev().find_map(|line| line.trim().strip_prefix("Error: ")).filter(|_| is_text);
     let why = why.map(in_words);
     let why = why.map(|why| why.chars().take(LONGEST).collect::<String>()).map_or(String::new(), |why| format!(": {why}"));
+    let why = why + if what.contains("end of file") { "; it was cut off: get the file again" } else { "" };
     match line.filter(|_| is_text) {
         Some(line) => anyhow!("PLY, line {line}: {what}{why}"),
         None => anyhow!("PLY: {what}{why}"),
@@ -414,7 +415,7 @@ mod tests {
             (file(three, "3 0 1\n"), "PLY, line 13: Couldn't read element line: Expected 3 list elements, but found only 2"),
             (
                 file(three, "3 0 1 2\n").replace("3 0 1 2\n", ""),
-                "PLY, line 13: Unexpected end of file while reading element 'face' (expected 1, got 0)",
+                "PLY, line 13: Unexpected end of file while reading element 'face' (expected 1, got 0); it was cut off: get the file again",
             ),
             (file(three, "").replace("property double z\n", ""), "PLY: vertices have no property z; export them with x, y and z"),
             (file(three, "").replace("vertex_indices", "corners"), "PLY: faces have no property vertex_indices or vertex_index"),
@@ -435,7 +436,10 @@ mod tests {
         }
         let whole = binary(false);
         let cut = format!("{:#}", parse(&whole[..whole.len() - 3]).unwrap_err());
-        assert_eq!(cut, "PLY: Unexpected end of file while reading binary element 'face' (expected 1, got 0)");
+        assert_eq!(
+            cut,
+            "PLY: Unexpected end of file while reading binary element 'face' (expected 1, got 0); it was cut off: get the file again"
+        );
     }
 
     #[test]

@@ -3,8 +3,17 @@
 use std::collections::HashMap;
 
 /// The text of a file: UTF-8, and where a line is not, each byte a character of its own. So names in another encoding stay different from one another,
-/// and the same name is the same text in every file.
+/// and the same name is the same text in every file. A text that begins with the mark of UTF-16 is read as that, as every reader of XML has to.
 pub(crate) fn decoded(bytes: &[u8]) -> String {
+    let wide = |bytes: &[u8], unit: fn([u8; 2]) -> u16| {
+        let units = bytes.as_chunks().0.iter().map(|&pair| unit(pair));
+        char::decode_utf16(units).map(|char| char.unwrap_or(char::REPLACEMENT_CHARACTER)).collect()
+    };
+    match bytes {
+        [0xFF, 0xFE, text @ ..] => return wide(text, u16::from_le_bytes),
+        [0xFE, 0xFF, text @ ..] => return wide(text, u16::from_be_bytes),
+        _ => {}
+    }
     if let Ok(text) = str::from_utf8(bytes) {
         return text.to_owned();
     }
@@ -93,6 +102,18 @@ mod tests {
         let text = decoded(b"usemtl Rot\xE4\nusemtl Rot\xF6\r\nusemtl \x95\x5C\nusemtl \x90\x5C\nusemtl Rot\xC3\xA4");
         let lines: Vec<_> = logical_lines(&plain(&text)).map(|(_, line)| rest(&line)).collect();
         assert_eq!(lines, ["Rotä", "Rotö", "\u{95}\\", "\u{90}\\", "Rotä"]);
+    }
+
+    #[test]
+    fn text_of_wide_characters_is_read_by_its_mark() {
+        let text = "<a name=\"Würfel 🎲\"/>";
+        let bytes =
+            |bytes_of: fn(u16) -> [u8; 2]| "\u{FEFF}".encode_utf16().chain(text.encode_utf16()).flat_map(bytes_of).collect::<Vec<_>>();
+        for mut wide in [bytes(u16::to_le_bytes), bytes(u16::to_be_bytes)] {
+            assert_eq!(decoded(&wide), text);
+            wide.truncate(wide.len() - 1);
+            assert_eq!(decoded(&wide), text.strip_suffix('>').unwrap());
+        }
     }
 
     #[test]

@@ -370,6 +370,9 @@ fn archives_are_unpacked_as_3mf_allows() {
     damaged[60] ^= 0x55;
     assert_eq!(refused(&damaged), "3MF: the part 3D/3dmodel.model is damaged; get the file again");
     assert_eq!(refused(b"v 0 0 0"), "3MF: the file is no zip archive, as 3MF is; give it the ending of its format, or export it again");
+    // XML may be in UTF-16.
+    let wide: Vec<u8> = "\u{FEFF}".encode_utf16().chain(text.encode_utf16()).flat_map(u16::to_le_bytes).collect();
+    assert_eq!(corners(&parsed(&packed(&[("3D/3dmodel.model", &wide)]))), corners(&parsed(&good)));
     // The size that the directory says, and that a bomb does not hide.
     let directory = good.windows(4).position(|word| word == b"PK\x01\x02").unwrap();
     let mut huge = good.clone();
