@@ -482,7 +482,7 @@ impl<'a> Stream<'a> {
                 let [w, x, y, z] = key.rotation.map(|c| i64::from(c >> 1));
                 field(key.rotation.iter().all(|&c| within(c, 1 << ROTATION)), "key rotation", record)?;
                 field(is_one(w * w + x * x + y * y + z * z, 2 * (ROTATION - 1)), "key rotation", record)?;
-                let length = key.position.iter().map(|&c| i64::from(c) * i64::from(c)).sum::<i64>();
+                let length = wide_square(key.position);
                 let in_reach = track.kind != CAMERA_TRACK || length <= i64::from(MAX_LENGTH) * i64::from(MAX_LENGTH);
                 field(key.position.iter().all(|&c| within(c, MAX_POSITION.to_bits())) && in_reach, "key position", record)?;
                 field(!is_directional || is_one(length, 2 * UNIT), "key direction", record)?;
@@ -628,7 +628,7 @@ impl Camera {
 impl Light {
     /// What is out of its range, if anything is.
     pub(crate) fn fault(&self) -> Option<&'static str> {
-        let square = self.vector.iter().map(|&c| i64::from(c) * i64::from(c)).sum::<i64>();
+        let square = wide_square(self.vector);
         fault([
             (self.kind <= SKY && self.space <= EYE_SPACE, "light kind"),
             (is_gain(self.colour), "light colour"),
@@ -726,6 +726,11 @@ fn within(c: i32, limit: i32) -> bool {
 fn square([x, y, z]: [i16; 3]) -> u32 {
     let square = |c: i16| u32::from(c.unsigned_abs()) * u32::from(c.unsigned_abs());
     square(x) + square(y) + square(z)
+}
+
+/// The squared length of a vector. It saturates: three squares of 2^62 are more than a sum can have.
+fn wide_square(v: [i32; 3]) -> i64 {
+    v.iter().fold(0, |sum: i64, &c| sum.saturating_add(i64::from(c) * i64::from(c)))
 }
 
 /// Whether `square`, with `bits` fraction bits, is 1 to 1/256.
