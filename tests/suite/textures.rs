@@ -75,7 +75,7 @@ fn a_board_draws_the_same_bits() {
 }
 
 /// A white material with this much of highlights.
-pub fn white(specular: f64) -> Material {
+pub(crate) fn white(specular: f64) -> Material {
     let gain = |gain: f64| [Gain::from_num(gain); 3];
     Material::new(gain(0.18), gain(0.7), gain(specular), 30)
 }
