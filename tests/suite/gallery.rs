@@ -5,7 +5,7 @@
 use crate::golden::{bless, check_pixels, root};
 use embedded_graphics::prelude::Size;
 use microphong::{
-    format::Gain,
+    format::{ErrorBudget, Gain},
     stream::record::{HAS_COLOURS, Material},
 };
 use microphong_sim::{
@@ -89,7 +89,7 @@ fn the_documents_show_the_gallery() {
     assert_eq!(check_pixels(&root().join("../docs/gallery.png"), size, &sheet, bless()), None);
 }
 
-/// The scene in the light of the first lamps, in its colours and in one colour for all of it.
+/// The scene in the light of the first lamps, in its colours and in one colour for all of it, with an error budget of 1.
 fn in_colours_and_in_one(scene: &Scene, lamps: usize) -> [Scene; 2] {
     let mut records = Records::of(&scene.stream.parse().unwrap());
     assert!(records.meshes.iter().all(|mesh| mesh.flags & HAS_COLOURS != 0));
@@ -99,7 +99,8 @@ fn in_colours_and_in_one(scene: &Scene, lamps: usize) -> [Scene; 2] {
         let by = |colour: [Gain; 3]| [0, 1, 2].map(|k| Gain::from_num(colour[k].to_num::<f64>() * [0.8, 0.35, 0.12][k]));
         *material = Material::new(by(material.ambient()), by(material.diffuse()), material.specular(), material.exponent);
     }
-    [records, plain].map(|records| Scene { stream: records.written().unwrap(), ..scene.clone() })
+    let of = |records: Records| Scene { stream: records.written().unwrap().with_budget(ErrorBudget::ONE), ..scene.clone() };
+    [records, plain].map(of)
 }
 
 /// A frame on a Cortex-M3 takes at most this many times the instructions of a frame in one colour. The aim of `phong` and `auto` is 1.25. Their loops for

@@ -17,13 +17,13 @@ pub mod supersampled;
 use anyhow::{Context, Result, ensure};
 use edges::Edges;
 pub use edges::Jumps;
-use embedded_graphics_core::{geometry::Size, pixelcolor::Rgb565};
+use embedded_graphics_core::geometry::Size;
 use figures::Spread;
 use level::Walked;
 use microphong::{Stream, renderer::check};
 use microphong_oracle::{self as oracle, Facet, Frame, Levels, Shade, Unsupported};
 use microphong_render::{
-    choices::{self, Choices, Chosen},
+    choices::{Choices, Chosen},
     render::{self, Format, Settings, Style},
     shader::Shader,
 };
@@ -264,8 +264,7 @@ impl<'s> Reference<'s> {
         let integers = level::picture(self.stream, size, style, self.number)?;
         let settings = Settings { size, style, band_rows: size.height, format: Format::Rgb888 };
         let picture = render::picture(self.stream, &settings, self.number)?.rgb.as_chunks::<3>().0.to_vec();
-        // As most boards draw it.
-        let told = choices::by::<Rgb565>(shader, self.stream, size, perspective_correct, self.number)?;
+        let told = level::choices(self.stream, size, style, self.number)?;
         // Of a method that chooses, what it has chosen for each triangle.
         let chosen = |facet: &Facet| told.as_ref()?.ways.get(facet.id as usize).copied().flatten();
         let shade = |facet| shaded(&self.frame, facet, name, chosen(facet));
