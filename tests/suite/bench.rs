@@ -156,6 +156,23 @@ fn smooth_outlines_cost_what_the_guide_says() {
     assert!(Bench::antialiased(&[Processor::X86_64]).unwrap_err().to_string().contains("--styles"));
 }
 
+/// Frames a second of the Pico are those of the guide, and both of its processors draw the largest meshes that it has room for.
+#[test]
+fn frames_of_the_pico_are_those_of_the_guide() {
+    let guide = include_str!("../../docs/guide/costs.md");
+    let processor = Processor::CortexM0Plus;
+    let bench = Bench::new(&[processor]).unwrap();
+    for name in ["teapot", "torus", "bunny"] {
+        let scene = scene::load(name).unwrap();
+        let timing = bench.count(&scene, &[(processor, Shader::GOURAUD)], &|| ()).unwrap()[0].timing.expect("a time");
+        println!("{name}: {timing:?}");
+        let row = guide.lines().find(|line| line.starts_with(&format!("| `{name}`, ")) && line.contains(" triangles |")).expect("a row");
+        let stated: f64 = row.split('|').nth(3).and_then(|cell| cell.trim().parse().ok()).expect("a figure");
+        assert!((timing.frames_per_second / stated - 1.0).abs() < 0.04, "{name}: {timing:?}, and the guide says {stated}");
+        assert!(timing.frame_cycles * 10 < timing.render_cycles * 7, "{name} is drawn by one processor: {timing:?}");
+    }
+}
+
 /// A file of recorded costs.
 fn recorded(file: &str) -> (PathBuf, Vec<Entry>) {
     let path = Path::new(env!("CARGO_MANIFEST_DIR")).join("baselines").join(file);
