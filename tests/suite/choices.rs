@@ -158,7 +158,10 @@ fn compare_tells_choices() {
     let objects: Vec<_> = succeeds(directory.path(), &[&arguments[..], &["--json"]].concat()).lines().map(object).collect();
     let [gouraud, auto] = &objects[..] else { panic!("an object per method") };
     assert!(gouraud["budget"].is_null() && gouraud["choices"].is_null(), "{gouraud}");
-    let shown = succeeds(directory.path(), &["render", "torus", "--size", "80x80", "--budget", "2", "--show", "methods", "--json"]);
+    let shown = succeeds(
+        directory.path(),
+        &["render", "torus", "--size", "80x80", "--budget", "2", "--format", "rgb888", "--show", "methods", "--json"],
+    );
     let shown = object(&shown);
     assert_eq!((&auto["budget"], &auto["choices"]), (&shown["budget"], &shown["choices"]));
 }

@@ -454,11 +454,11 @@ fn files_of_a_model_are_never_overwritten() {
     );
     let model = ["fox.obj", "fox.mtl", "fox.png"].map(|name| (name, fs::read(place.0.path().join(name)).expect("a file of the model")));
     for (name, _) in &model {
-        place.fails(&["convert", "fox.obj", "-o", name], 2, &[name, "overwritten", "-o"]);
-        place.fails(&["convert", "scene.toml", "-o", name], 2, &[name, "overwritten", "-o"]);
+        place.fails(&["convert", "fox.obj", "-o", name], 2, &[name, "overwrite", "-o"]);
+        place.fails(&["convert", "scene.toml", "-o", name], 2, &[name, "overwrite", "-o"]);
     }
-    place.fails(&["render", "fox.obj"], 2, &["fox.png", "overwritten", "-o"]);
-    place.fails(&["render", "fox.obj", "-o", "./fox.png"], 2, &["fox.png", "overwritten", "-o"]);
+    place.fails(&["render", "fox.obj"], 2, &["fox.png", "overwrite", "-o"]);
+    place.fails(&["render", "fox.obj", "-o", "./fox.png"], 2, &["fox.png", "overwrite", "-o"]);
     for (name, bytes) in model {
         assert!(fs::read(place.0.path().join(name)).expect("a file of the model") == bytes, "{name}");
     }

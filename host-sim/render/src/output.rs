@@ -30,7 +30,7 @@ pub struct Kept(PathBuf);
 
 impl fmt::Display for Kept {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
-        write!(f, "-o would overwrite {}, which is read for this; name another file", self.0.display())
+        write!(f, "this would overwrite {}, which it reads; name another file with -o", self.0.display())
     }
 }
 

@@ -307,7 +307,7 @@ mod tests {
         let text = page(&measured().into_iter().map(chosen).collect::<Vec<_>>(), &[], &[], "").into_string();
         // Two scenes, two processors, triangles and pixels.
         assert_eq!(text.matches("class=\"shares\"").count(), 8);
-        assert_eq!(text.matches("<td data-value=\"1\">1</td>").count(), 4, "budgets");
+        assert_eq!(text.matches("<td data-value=\"4\">4</td>").count(), 4, "budgets of RGB565");
     }
 
     #[test]
