@@ -11,12 +11,12 @@ pub struct Budget {
     pub layout: Layout,
 }
 
-/// ST7789 panel; all of it stays within 250 KiB of the 264 that the RP2040 has. It has room for a closed mesh of 3,776 triangles, which
+/// ST7789 panel; all of it stays within 240 KiB of the 264 that the RP2040 has. It has room for a closed mesh of 3,776 triangles, which
 /// has about 1,890 vertices. About half of its triangles face the viewer, and only these are in lists; both processors draw a frame if the lists have room
 /// for twice as many. It has fewer tables of highlights than materials, because materials with equal highlights share one.
 pub const PICO: Budget = Budget {
     height: 240,
-    layout: Layout::new(240, 24)
+    layout: Layout::new(240, 18)
         .processors(2)
         .vertices(1890)
         .triangles(3776)

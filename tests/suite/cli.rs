@@ -706,7 +706,7 @@ fn wrong_usage_is_told_from_failure() {
     place.fails(&["bench", "--renew", "costs.csv"], 2, &["--reason <TEXT>"]);
     place.fails(&["bench", "--renew", "costs.csv", "--reason", " "], 2, &["--reason", "a reason is needed"]);
     place.fails(&["bench", "--reason", "none"], 2, &["--renew <FILE>"]);
-    place.fails(&["bench", "--styles", "--board", "pico"], 2, &["--styles", "--board"]);
+    place.fails(&["bench", "--styles", "--board", "uno"], 2, &["uno", "pico"]);
     place.fails(&["verify", "triangle", "--board", "pico", "--antialias"], 1, &["pico", "smooth outlines", "memory"]);
     place.fails(&["bench", "--redraw", "--skips"], 2, &["--redraw", "--skips"]);
     for what in ["--styles", "--skips", "--redraw"] {
