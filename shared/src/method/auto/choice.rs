@@ -13,8 +13,9 @@ use crate::{
     math::vector::wide,
     method::{
         CornerCosines, Shading, TriangleSetup,
-        auto::error_bound::{Curvature, Interval, LinearBound, of_product},
+        auto::error_bound::{Curvature, Interval, LinearBound, MOST_LIGHT, of_product},
         largest, largest_range,
+        levels::gouraud,
     },
     raster::counts::Counts,
     setup::edge::COLUMNS,
@@ -150,6 +151,12 @@ fn lit_range(cosines: &[i32; 3]) -> i32 {
     bright.max(0) - dark.max(0)
 }
 
+/// Whether a level of the corners may have been clamped at 255.
+#[inline(always)]
+fn is_clamped(levels: &[[i32; 3]; 3]) -> bool {
+    levels.as_flattened().iter().any(|&level| level >= FULL)
+}
+
 /// One colour or linear interpolation under one constant light, where linear interpolation has these bounds; `None` if levels of the corners may have
 /// been clamped at 255.
 #[inline(always)]
@@ -160,9 +167,15 @@ fn one_light(setup: &TriangleSetup<'_>, shading: &Shading<'_>, [towards, _]: &Co
     // The levels in one channel, the highlights in three.
     let reflected = || extremes([a.light[2], b.light[2], c.light[2]]);
     if brightest as i32 >= FULL {
-        let [_, most] = reflected();
-        let most = if three { limits.brightest(largest(towards).max(0), most) } else { most };
-        if most >= FULL {
+        let is_clamped = if setup.albedos().is_some() {
+            // Colours darken what the material alone would reflect.
+            brightest > MOST_LIGHT || is_clamped(&gouraud::reflected(setup, &reflectance))
+        } else {
+            let [_, most] = reflected();
+            let most = if three { limits.brightest(largest(towards).max(0), most) } else { most };
+            most >= FULL
+        };
+        if is_clamped {
             return None;
         }
     }
@@ -181,7 +194,7 @@ fn one_light(setup: &TriangleSetup<'_>, shading: &Shading<'_>, [towards, _]: &Co
             return None;
         }
         // The range of the product.
-        diffuse += ((range * brightest.min(1 << SHARE)) >> SHARE) + 1;
+        diffuse += ((range * brightest) >> SHARE) + 1;
     }
     let range = || {
         let [least, most] = reflected();
@@ -211,7 +224,7 @@ fn two_lights(
 ) -> Option<Choice> {
     let LinearBound { interval, brightest, has_highlight } = bounds;
     let Shading { error_bounds: limits, budget, .. } = *shading;
-    if brightest as i32 >= FULL && corner_levels(setup, shading).as_flattened().iter().any(|&level| level >= FULL) {
+    if brightest as i32 >= FULL && is_clamped(&corner_levels(setup, shading)) {
         return None;
     }
     if !has_highlight {
@@ -244,6 +257,9 @@ fn under_summed_lights(setup: &TriangleSetup<'_>, shading: &Shading<'_>) -> Opti
     let mut interval = Interval::of_sum(curvature, sums);
     let diffuse = reflectance.summed_level((red[1] - red[0]).max(green[1] - green[0]).max(blue[1] - blue[0])) as u32 + 1;
     if let Some(albedos) = setup.albedos() {
+        if diffuse > MOST_LIGHT {
+            return None;
+        }
         interval = interval.widened(of_product(Albedo::range(albedos), diffuse));
     }
     if interval.half() > budget {
@@ -270,12 +286,12 @@ fn under_summed_lights(setup: &TriangleSetup<'_>, shading: &Shading<'_>) -> Opti
         return None;
     }
     let brightest = brightest + reflectance.summed_level(largest(&reflectance.pure_ambient())) as u32 + 1;
-    if brightest as i32 >= FULL && corner_levels(setup, shading).as_flattened().iter().any(|&level| level >= FULL) {
+    if brightest as i32 >= FULL && (is_clamped(&corner_levels(setup, shading)) || setup.albedos().is_some() && brightest > MOST_LIGHT) {
         return None;
     }
     let range = || match has_highlight && varies {
         true => largest_range(corner_levels(setup, shading)),
-        false => diffuse + setup.albedos().map_or(0, |albedos| ((Albedo::range(albedos) * brightest.min(1 << SHARE)) >> SHARE) + 1),
+        false => diffuse + setup.albedos().map_or(0, |albedos| ((Albedo::range(albedos) * brightest) >> SHARE) + 1),
     };
     if interval.half() + (diffuse >> 1) < budget && interval.half() + (range() >> 1) < budget {
         return Some(Choice::Solid(interval.middle()));

@@ -261,16 +261,19 @@ fn terminator(curvature: Curvature, &[a, b, c]: &[i32; 3], most: u32) -> Option<
     (least < 0).then(|| [curvature.cosine(most), above_zero(0i32.wrapping_sub(least))])
 }
 
+/// The brightest light for which there are bounds on a surface with colours at its corners, Q9.7: 512 of 255.
+pub(crate) const MOST_LIGHT: u32 = 1 << SHARE;
+
 /// A bound of the difference between the product of two values that are linear over the triangle and what is interpolated linearly between the products
 /// at the corners: a quarter of the product of their ranges. The colour of the surface, Q0.16, and the level of light, Q9.7, differ by these ranges
-/// between the corners.
+/// between the corners. Domain: a level of at most [`MOST_LIGHT`].
 ///
 /// Proof: at a point with the weights w of the corners the difference is the covariance of the two values at the corners, where these have the
 /// probabilities w. It is at most the root of the product of their variances (Cauchy and Schwarz), and a variance at most a quarter of the squared
 /// range (Popoviciu).
 #[inline]
 pub(crate) fn of_product(colour: u32, level: u32) -> u32 {
-    ((colour * level.min(1 << SHARE)) >> (SHARE + 2)) + 1
+    ((colour * level) >> (SHARE + 2)) + 1
 }
 
 /// Bounds of linear interpolation between the corners.
