@@ -11,6 +11,7 @@ pub mod field;
 pub mod perspective;
 pub mod plane;
 pub mod quadric;
+pub mod wide_quadric;
 
 /// A polynomial of one triangle, standing on one row.
 pub trait Patch: Copy {

@@ -153,14 +153,14 @@ impl<const CH: usize> Patch for Quadric<CH> {
                 d2: self.0.map(|row| row.dxx.wrapping_mul(2) as u32),
             };
         }
-        let mut walker = QuadraticWalker { value: [0; CH], d1: [0; CH], d2: [0; CH] };
+        let mut walker = QuadraticWalker::default();
         each_channel::<CH>(|c| {
             let row = &self.0[c];
             let quadratic = row.dxx.wrapping_mul(x);
-            walker.value[c] = row.c.wrapping_add(row.dx.wrapping_add(quadratic).wrapping_mul(x)) as u32;
+            let value = row.c.wrapping_add(row.dx.wrapping_add(quadratic).wrapping_mul(x));
             // V(x - 1) - V(x) = dxx - dx - 2 dxx x.
-            walker.d1[c] = row.dxx.wrapping_sub(row.dx).wrapping_sub(quadratic.wrapping_mul(2)) as u32;
-            walker.d2[c] = row.dxx.wrapping_mul(2) as u32;
+            let step = row.dxx.wrapping_sub(row.dx).wrapping_sub(quadratic.wrapping_mul(2));
+            walker.start(c, [value, step, row.dxx.wrapping_mul(2)]);
         });
         walker
     }
@@ -184,6 +184,20 @@ pub struct QuadraticWalker<const CH: usize> {
     value: [u32; CH],
     d1: [u32; CH],
     d2: [u32; CH],
+}
+
+impl<const CH: usize> Default for QuadraticWalker<CH> {
+    fn default() -> Self {
+        Self { value: [0; CH], d1: [0; CH], d2: [0; CH] }
+    }
+}
+
+impl<const CH: usize> QuadraticWalker<CH> {
+    /// Sets the value of a channel, its next difference, and the difference of differences.
+    #[inline(always)]
+    pub(super) fn start(&mut self, channel: usize, differences: [i32; 3]) {
+        [self.value[channel], self.d1[channel], self.d2[channel]] = differences.map(|difference| difference as u32);
+    }
 }
 
 impl<const CH: usize> Walker for QuadraticWalker<CH> {

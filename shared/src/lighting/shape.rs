@@ -78,6 +78,16 @@ impl Shape {
         self.slope != 0
     }
 
+    /// The most that the strength of the light changes where a squared distance changes by 1, or its product with the axis of the cone. `square` is a
+    /// lower bound of squared distances, Q2.30, of which the largest is 1.
+    #[must_use]
+    pub(crate) fn slope(&self, nearness: Nearness, square: u32) -> u64 {
+        // The slope of (1 - d²/R²)², and of ((c - e)/(f - e))², where c is a product over a root.
+        let range = (2 * u64::from(nearness.mantissa)) >> nearness.shift;
+        let cosine = (3 << COSINE) / u64::from(square.max(1));
+        range + ((u64::from(self.slope) * cosine) >> SLOPE)
+    }
+
     /// The strength of the light at a point from which the light is `way` away, Q7.25, where its cone is about `axis`: 0 to 1 << [`STRENGTH`].
     #[must_use]
     pub(super) fn strength(&self, axis: [i32; 3], way: [i32; 3]) -> u32 {

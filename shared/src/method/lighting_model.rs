@@ -21,6 +21,7 @@ use crate::{
         weakening::{Change, Way},
     },
     raster::canvas::{CHUNK, Canvas, SpanShader, SpanTarget, covered},
+    setup::steepness::Steepness,
 };
 
 /// Computes the light at a pixel from interpolated fields: `V` for each light, `D` for a light without a highlight, and `K` once for all lights.
@@ -111,7 +112,8 @@ fn share(walked: u32) -> i64 {
 fn ways(colours: &[Albedo; 6]) -> [Way; 2] {
     let [a, b, c, ab, bc, ca] = map_six(*colours, |albedo| map(albedo.shares(), |share| share << (COSINE - 16)));
     let channel = |k: usize| [a[k], b[k], c[k], ab[k], bc[k], ca[k]];
-    [quadratic([channel(0), channel(1)]), quadratic([channel(2), [0; 6]])]
+    let way = |nodes| Way::new(nodes, Steepness::NONE);
+    [way([channel(0), channel(1)]), way([channel(2), [0; 6]])]
 }
 
 /// How a light changes over a triangle: nothing in a program without the feature.

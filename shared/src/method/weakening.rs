@@ -6,11 +6,12 @@
 //!
 //! Cost: 4 additions and 3 products a pixel; in a cone a root and 4 products more. Error: the squared distance errs by 2^-24 of that of the farthest
 //! corner, which counts where a triangle is much larger than the range: 2^-14 of d²/R² where it is 32 times as large. In a
-//! cone the cosine errs by 2^-25 q², where q is the distance of the farthest corner over that of the pixel.
+//! cone the cosine errs by 2^-25 q², where q is the distance of the farthest corner over that of the pixel. Where light is so steep a function of them
+//! that their walking would show, their coefficients have more bits.
 
 use crate::{
     format::{COSINE, PIXEL_COSINE},
-    interpolate::{Patch, Walker},
+    interpolate::{Patch, Walker, field::Field, wide_quadric::WideQuadric},
     lighting::{
         lights::{Source, point},
         reflectance::Reflection,
@@ -24,11 +25,38 @@ use crate::{
         node::{FRACTION, coefficients, field_product},
         products::{QuadraticNodes, quadratic, signed},
     },
+    setup::{gradients::Gradients, steepness::Steepness},
     stream::record::Vertex,
 };
 
-/// Squared distance of a light, where the farthest corner has the distance 1, and product of the way from the light and the axis of its cone.
-pub(crate) type Way = QuadraticNodes<2>;
+/// A pair of fields, and how steeply light depends on them: the squared distance of a light, where the farthest corner has the distance 1, and the
+/// product of the way from the light and the axis of its cone; or two colours.
+#[derive(Clone, Copy, Debug)]
+pub(crate) struct Way {
+    nodes: QuadraticNodes<2>,
+    steepness: Steepness,
+}
+
+impl Way {
+    /// The fields with these values at the nodes, Q2.30.
+    pub(crate) fn new(nodes: [[i32; 6]; 2], steepness: Steepness) -> Self {
+        Self { nodes: quadratic(nodes), steepness }
+    }
+}
+
+impl Field for Way {
+    type Value = [u32; 2];
+    type Patch = WideQuadric<2>;
+    type Surface = QuadraticNodes<2>;
+
+    fn fit(&self, gradients: &Gradients) -> WideQuadric<2> {
+        WideQuadric::fit(&gradients.steep(gradients.steepness().max(self.steepness)), &self.nodes)
+    }
+
+    fn surface(&self) -> QuadraticNodes<2> {
+        self.nodes
+    }
+}
 
 /// How a light changes over a triangle.
 #[derive(Clone, Copy, Debug)]
@@ -57,12 +85,14 @@ impl<'f> Change<'f, Way> {
         let ways = over_longest::<FRACTION>(ways);
         let squares = field_product(&ways, &ways);
         let least = coefficients(squares).into_iter().fold(i32::MAX, i32::min);
-        if shape.weaker(nearness.part(least.max(0) as u32), || 1 << COSINE) == 0 {
+        let least = least.max(0) as u32;
+        if shape.weaker(nearness.part(least), || 1 << COSINE) == 0 {
             return Self::Dark;
         }
         let [a, b, c] = map(ways, |way| -((dot(axis, way) >> FRACTION) as i32));
         let middle = |a: i32, b: i32| (a >> 1) + (b >> 1);
-        Self::Weaker(quadratic([squares, [a, b, c, middle(a, b), middle(b, c), middle(c, a)]]), shape, nearness)
+        let along = [a, b, c, middle(a, b), middle(b, c), middle(c, a)];
+        Self::Weaker(Way::new([squares, along], Steepness::of_slope(shape.slope(nearness, least))), shape, nearness)
     }
 }
 

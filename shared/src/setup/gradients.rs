@@ -407,6 +407,19 @@ impl Gradients {
     #[cold]
     #[inline(never)]
     pub(crate) fn quadratic_any(self, range: u32, nodes: [i32; 6], extra: u32) -> [i32; 6] {
+        self.round(self.quadratic_unmoved(range, nodes, extra))
+    }
+
+    /// `[c, dx, dy, dxx, dxy, dyy]` of the quadratic through six nodes in a range of 2^`range`, at the anchor, with [`GUARD`] more fraction bits than
+    /// walked.
+    #[cold]
+    #[inline(never)]
+    pub(crate) fn fine_quadratic(self, range: u32, nodes: [i32; 6], extra: u32) -> [i64; 6] {
+        self.moved(self.quadratic_unmoved(range, nodes, extra))
+    }
+
+    /// The coefficients of [`Self::fine_quadratic`] at the pixel of corner 0.
+    fn quadratic_unmoved(self, range: u32, nodes: [i32; 6], extra: u32) -> [i64; 6] {
         let [i0, i1, i2, i01, i12, i20] = nodes;
         let ratio = if range > word_sized::LINEAR { MAX_FINE_THINNESS } else { MAX_THINNESS };
         // Half the matrix of second derivatives: [[ss, st], [st, tt]].
@@ -425,7 +438,7 @@ impl Gradients {
             }
         }
         if is_exact && let Some(sliver) = self.sliver() {
-            return self.round(sliver.quadratic(nodes, extra + GUARD as u32));
+            return sliver.quadratic(nodes, extra + GUARD as u32);
         }
         let (c, dx, dy) = self.derivatives(i0, 4 * i01 - 3 * i0 - i1, 4 * i20 - 3 * i0 - i2, extra);
         // One factor of the chain rule, then the other: two products with mantissas, less these bits, stay below 2^31.
@@ -444,7 +457,7 @@ impl Gradients {
         let c = c.wrapping_add(along(dx + bend_x + mixed, ox)).wrapping_add(along(dy + bend_y, oy));
         let dx = dx.wrapping_add(2 * bend_x).wrapping_add(mixed);
         let dy = dy.wrapping_add(2 * bend_y).wrapping_add(along(dxy, ox));
-        self.round([c, dx, dy, dxx, dxy, dyy])
+        [c, dx, dy, dxx, dxy, dyy]
     }
 
     /// Length over height, rounded up, where length is measured as in [`Self::is_thinner_than`].
@@ -474,10 +487,17 @@ impl Gradients {
 
     /// Moves coefficients from corner 0's pixel to the anchor, exactly, and rounds them to the walked format.
     #[inline]
-    fn round(&self, [c, dx, dy, dxx, dxy, dyy]: [i64; 6]) -> [i32; 6] {
+    fn round(&self, coefficients: [i64; 6]) -> [i32; 6] {
+        let [c, dx, dy, dxx, dxy, dyy] = self.moved(coefficients);
         let done = |v: i64| scale(v, GUARD) as i32;
+        [done(c), done(dx), done(dy), done(dxx), done(dxy), done(dyy)]
+    }
+
+    /// Moves coefficients from corner 0's pixel to the anchor, exactly.
+    #[inline]
+    fn moved(&self, [c, dx, dy, dxx, dxy, dyy]: [i64; 6]) -> [i64; 6] {
         if self.shift == [0; 2] {
-            return [done(c), done(dx), done(dy), done(dxx), done(dxy), done(dyy)];
+            return [c, dx, dy, dxx, dxy, dyy];
         }
         let [x, y] = self.shift.map(i64::from);
         let m = i64::wrapping_mul;
@@ -486,7 +506,7 @@ impl Gradients {
         let c = c.wrapping_add(m(dx.wrapping_add(bend_x), x)).wrapping_add(m(dy.wrapping_add(bend_y), y));
         let dx = dx.wrapping_add(bend_x).wrapping_add(m(dxx, x));
         let dy = dy.wrapping_add(bend_y).wrapping_add(bend_y).wrapping_add(m(dxy, x));
-        [done(c), done(dx), done(dy), done(dxx), done(dxy), done(dyy)]
+        [c, dx, dy, dxx, dxy, dyy]
     }
 }
 

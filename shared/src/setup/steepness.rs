@@ -85,6 +85,17 @@ impl Steepness {
         Self { walked: Self::ALL, ..self }
     }
 
+    /// The steepness of fields of which light is a function with this slope: a field that errs by e makes an error of e `slope` in light of full strength.
+    pub(crate) fn of_slope(slope: u64) -> Self {
+        Self::new(slope.min(MOST.into()) as u32)
+    }
+
+    /// The larger steepness, by which every fast way is exact enough for both.
+    #[must_use]
+    pub(crate) fn max(self, other: Self) -> Self {
+        Self { exponent: self.exponent.max(other.exponent), walked: self.walked.min(other.walked), bend: self.bend.min(other.bend) }
+    }
+
     /// Whether a quadratic can be walked in words as far as `span` columns plus rows from its anchor.
     pub(crate) fn walks_in_words(self, span: u32) -> bool {
         // Steepness has at most 13 bits, and no limit is above 1,023 pixels: all products fit a word.
