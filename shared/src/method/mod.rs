@@ -355,6 +355,12 @@ impl TriangleSetup<'_> {
         !PERSPECTIVE || self.inv_depth().is_none() || !self.is_curved() && !self.has_texture()
     }
 
+    /// [`Self::middles`] on the screen, Q2.30.
+    pub(crate) fn fine_middles(&self) -> [u32; 3] {
+        let [a, b, c] = self.corners;
+        perspective::fine_middles([a.depth, b.depth, c.depth])
+    }
+
     /// Whether such a quadratic also serves a root of N·H, which bends more than light: besides, the farthest corner is at most 9/8 as far as the
     /// nearest, or perspective is off.
     #[inline(always)]

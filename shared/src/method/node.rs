@@ -12,7 +12,7 @@ use crate::{
         rsqrt::{HalfRsqrt, LEAST, rsqrt_wide},
         vector::{add, dot, map, normalise, wide, zip},
     },
-    method::{Middles, Shading, TriangleSetup},
+    method::{Middles, Shading, TriangleSetup, perspective},
     stream::record::Vertex,
 };
 
@@ -113,7 +113,7 @@ impl Shading<'_> {
             let [c_ab, c_bc, c_ca] = setup.middle_colours(shares);
             return [levels(ab, rab, c_ab), levels(bc, rbc, c_bc), levels(ca, rca, c_ca)];
         }
-        let [ab, bc, ca] = seen_nodes(setup, shares);
+        let [ab, bc, ca] = seen_nodes(setup);
         [self.levels(&ab), self.levels(&bc), self.levels(&ca)]
     }
 }
@@ -151,8 +151,10 @@ impl TriangleSetup<'_> {
 
     /// [`Self::six_nodes`] with the nodes `middles`.
     pub(crate) fn six_nodes_at(&self, middles: Middles, exponent: u16) -> [Node; 6] {
-        let Middles(Some(shares)) = middles else { return self.six_nodes(exponent) };
-        let ([a, b, c], [ab, bc, ca]) = (self.corner_nodes(), seen_nodes(self, shares));
+        if middles.0.is_none() {
+            return self.six_nodes(exponent);
+        }
+        let ([a, b, c], [ab, bc, ca]) = (self.corner_nodes(), seen_nodes(self));
         [a, b, c, ab, bc, ca]
     }
 
@@ -275,7 +277,7 @@ impl TriangleSetup<'_> {
     #[inline(always)]
     pub(crate) fn six_half_at(&self, middles: Middles, corners: [i32; 3], exponent: u16) -> [i32; 6] {
         match middles {
-            Middles(Some(shares)) if PERSPECTIVE && is_steep(exponent) => exact_six_seen(self.vertices(), shares, corners),
+            Middles(Some(_)) if PERSPECTIVE && is_steep(exponent) => exact_six_seen(self, corners),
             Middles(Some(shares)) if PERSPECTIVE => self.six_seen(shares, corners),
             _ => self.six_half_from(corners, exponent),
         }
@@ -378,6 +380,13 @@ pub(crate) fn mixed(from: i32, to: i32, share: u16) -> i32 {
     from - by_fraction(from, share) + by_fraction(to, share)
 }
 
+/// The value at a share, Q2.30, of an edge, from those at its ends.
+fn mixed_finely(from: i32, to: i32, share: u32) -> i32 {
+    // Rounded to nearest.
+    let products = i64::from(from) * i64::from((1u32 << COSINE).wrapping_sub(share)) + i64::from(to) * i64::from(share);
+    ((products + (1 << (COSINE - 1))) >> COSINE) as i32
+}
+
 /// The sum of the ends' normals of each edge, weighted by its share; Q2.30.
 fn seen_normals([a, b, c]: [&Vertex; 3], [ab, bc, ca]: [u16; 3]) -> [[i32; 3]; 3] {
     let sum = |a: &Vertex, b: &Vertex, share: u16| {
@@ -387,29 +396,37 @@ fn seen_normals([a, b, c]: [&Vertex; 3], [ab, bc, ca]: [u16; 3]) -> [[i32; 3]; 3
     [sum(a, b, ab), sum(b, c, bc), sum(c, a, ca)]
 }
 
-/// The points at these shares of the edges, with their unit normals.
+/// [`seen_normals`] at shares of Q2.30.
+fn fine_normals([a, b, c]: [&Vertex; 3], [ab, bc, ca]: [u32; 3]) -> [[i32; 3]; 3] {
+    let normal = |vertex: &Vertex| wide(vertex.normal).map(|c| c << (COSINE - UNIT));
+    let sum = |a, b, share| zip(normal(a), normal(b), |a, b| mixed_finely(a, b, share));
+    [sum(a, b, ab), sum(b, c, bc), sum(c, a, ca)]
+}
+
+/// The points of the edges that are seen at their middles on the screen, with their unit normals.
 #[inline(never)]
-fn seen_nodes(setup: &TriangleSetup<'_>, shares: [u16; 3]) -> [Node; 3] {
-    let vertices = setup.vertices();
+fn seen_nodes(setup: &TriangleSetup<'_>) -> [Node; 3] {
+    let (vertices, shares) = (setup.vertices(), setup.fine_middles());
     let [a, b, c] = vertices.map(|vertex| point(vertex.position));
-    let between = |from, to, share| zip(from, to, |from, to| mixed(from, to, share));
+    let between = |from, to, share| zip(from, to, |from, to| mixed_finely(from, to, share));
     let [ab, bc, ca] = shares;
     let positions = [between(a, b, ab), between(b, c, bc), between(c, a, ca)];
     let node = |position, normal| Node { position, normal: normalise(normal), albedo: Node::NO_COLOUR };
-    let mut nodes = zip(positions, seen_normals(vertices, [ab, bc, ca]), node);
+    let mut nodes = zip(positions, fine_normals(vertices, shares), node);
     if VERTEX_COLOURS {
-        nodes.iter_mut().zip(setup.middle_colours([ab, bc, ca])).for_each(|(node, albedo)| node.albedo = albedo);
+        nodes.iter_mut().zip(setup.middle_colours(map(shares, perspective::rounded))).for_each(|(node, albedo)| node.albedo = albedo);
     }
     nodes
 }
 
-/// [`TriangleSetup::six_seen`] by the lengths of the sums of normals, for steep highlights.
+/// [`TriangleSetup::six_seen`] by the lengths of the sums of normals and by exact shares, for steep highlights.
 #[cold]
 #[inline(never)]
-fn exact_six_seen(vertices: [&Vertex; 3], shares: [u16; 3], [a, b, c]: [i32; 3]) -> [i32; 6] {
+fn exact_six_seen(setup: &TriangleSetup<'_>, [a, b, c]: [i32; 3]) -> [i32; 6] {
+    let shares = setup.fine_middles();
     let [at, bt, ct] = shares;
-    let sums = [mixed(a, b, at), mixed(b, c, bt), mixed(c, a, ct)];
-    let [ab, bc, ca] = zip(sums, seen_normals(vertices, shares), |sum, normal| {
+    let sums = [mixed_finely(a, b, at), mixed_finely(b, c, bt), mixed_finely(c, a, ct)];
+    let [ab, bc, ca] = zip(sums, fine_normals(setup.vertices(), shares), |sum, normal| {
         // 1/|N| is 2^(30 - exponent) times the mantissa, because N has 30 fraction bits.
         let (mantissa, exponent) = rsqrt_wide(dot(normal, normal).max(1) as u64);
         (product(sum, mantissa as i32) >> (exponent.max(30) - 30)) as i32

@@ -18,7 +18,11 @@
 //!    `six-point` is then nearer to Phong shading than without perspective, by measurement, also where triangles reach far. `sqrt6` does so up to r =
 //!    9/8; beyond that, by measurement, its quadratic in space is much nearer.
 
-use crate::{arch::product::unsigned_product, math::recip::recip};
+use crate::{
+    arch::product::unsigned_product,
+    format::COSINE,
+    math::{recip::recip, vector::map},
+};
 
 /// How values that are linear over a triangle are interpolated on the screen.
 #[derive(Clone, Copy)]
@@ -88,12 +92,23 @@ pub(super) fn linear_way(inv_depth: [i32; 3], range: u32, most: u32) -> LinearWa
 /// Q0.16. Inverse depths are positive. Error: 2^-17 for rounding, and 2^-28 more. Where one corner is
 /// more than 2^16 times as near, 2^-16.
 #[inline(never)]
-pub(super) fn middles([a, b, c]: [i32; 3]) -> [u16; 3] {
+pub(super) fn middles(inv_depth: [i32; 3]) -> [u16; 3] {
+    map(fine_middles(inv_depth), rounded)
+}
+
+/// A share, Q2.30, as unsigned Q0.16.
+#[inline(always)]
+pub(super) fn rounded(share: u32) -> u16 {
+    (((share >> (COSINE - 17)) + 1) >> 1).min(u16::MAX.into()) as u16
+}
+
+/// [`middles`] as Q2.30. Error: 2^-28.
+#[inline(always)]
+pub(super) fn fine_middles([a, b, c]: [i32; 3]) -> [u32; 3] {
     let share = |from: i32, to: i32| {
         let (sum, to) = ((from.max(1) as u32).wrapping_add(to.max(1) as u32), to.max(1) as u32);
         let zeros = sum.leading_zeros();
-        let share = (unsigned_product(to << zeros, recip(sum << zeros)) >> 45) as u32;
-        (share.wrapping_add(1) >> 1).min(u16::MAX.into()) as u16
+        (unsigned_product(to << zeros, recip(sum << zeros)) >> (62 - COSINE)) as u32
     };
     [share(a, b), share(b, c), share(c, a)]
 }
@@ -152,8 +167,10 @@ mod tests {
                 }
             };
             prop_assert!(error <= f64::from(MOST), "{error}");
-            for ((i, j), share) in edges.into_iter().zip(middles(depths)) {
-                let error = (f64::from(share) / 65536.0 - w[j] / (w[i] + w[j])).abs();
+            for (((i, j), share), fine) in edges.into_iter().zip(middles(depths)).zip(fine_middles(depths)) {
+                let error = |share: f64| (share - w[j] / (w[i] + w[j])).abs();
+                prop_assert!(error(f64::from(fine) / 2f64.powi(30)) <= 2f64.powi(-28));
+                let error = error(f64::from(share) / 65536.0);
                 prop_assert!(error <= 2f64.powi(-17) + 2f64.powi(-27) || w[i].max(w[j]) > 65_000.0 * w[i].min(w[j]) && error <= 2f64.powi(-16));
             }
         }
