@@ -20,8 +20,8 @@ use microphong::{
     pixel::{PictureCrc, Pixel},
 };
 
-/// Bytes of its stack.
-pub const STACK: usize = 10 << 10;
+/// Bytes of its stack. Colours at corners and textures may be drawn by any method under any lights, which takes most.
+pub const STACK: usize = if cfg!(feature = "vertex-colours") { 15 << 10 } else { 10 << 10 };
 
 /// Work for the second processor.
 struct Job(*mut (dyn FnMut() + Send));

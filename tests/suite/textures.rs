@@ -23,7 +23,12 @@ use microphong_sim::{
 use std::fs;
 
 /// The scene `records`, all of whose meshes have a texture of these colours. `place` tells where each vertex lies in it.
-fn textured(mut records: Records, [width, height]: [u8; 2], colours: &[[u8; 3]], place: impl Fn(u16) -> [u16; 2]) -> StreamBytes {
+pub(crate) fn textured(
+    mut records: Records,
+    [width, height]: [u8; 2],
+    colours: &[[u8; 3]],
+    place: impl Fn(u16) -> [u16; 2],
+) -> StreamBytes {
     records.colours = colours.iter().map(|&channels| Colour::new(channels)).collect();
     records.texels = (0..1usize << (width + height)).map(|texel| (texel % colours.len()) as u8).collect();
     records.texels.resize(records.texels.len().next_multiple_of(4), 0);
@@ -34,7 +39,7 @@ fn textured(mut records: Records, [width, height]: [u8; 2], colours: &[[u8; 3]],
 }
 
 /// A place that differs from vertex to vertex.
-fn anywhere(vertex: u16) -> [u16; 2] {
+pub(crate) fn anywhere(vertex: u16) -> [u16; 2] {
     [vertex.wrapping_mul(1_237) % 9_000, vertex.wrapping_mul(3_571) % 9_000]
 }
 

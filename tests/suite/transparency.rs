@@ -127,7 +127,7 @@ fn glass_shows_a_share_of_what_is_behind_it() {
 const COLOURS: [[u8; 3]; 5] = [[255; 3], [200, 90, 30], [20, 220, 250], [90, 90, 90], [250, 200, 0]];
 
 /// Gives meshes from `first` on a texture, in which colours that `is_hole` are holes. Without holes, their colour is `filled`.
-fn pierced(mut records: Records, first: usize, is_hole: impl Fn(usize) -> bool, filled: Option<[u8; 3]>) -> StreamBytes {
+pub(crate) fn pierced(mut records: Records, first: usize, is_hole: impl Fn(usize) -> bool, filled: Option<[u8; 3]>) -> StreamBytes {
     let hole = |k: usize| u8::from(filled.is_none() && is_hole(k));
     let channels = |k: usize| filled.filter(|_| is_hole(k)).unwrap_or(COLOURS[k]);
     records.colours = (0..COLOURS.len()).map(|k| Colour { channels: channels(k), hole: hole(k) }).collect();

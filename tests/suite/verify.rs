@@ -1,6 +1,6 @@
 //! The flashable firmware of every board, run on its emulated display and compared with the host, pixel by pixel.
 
-use crate::lights;
+use crate::{lights, textures, transparency, vertex_colours};
 use microphong::{
     Outlines,
     method::{Canvas, Facts, Method, Shading, TriangleSetup, levels::gouraud::Gouraud},
@@ -10,9 +10,10 @@ use microphong::{
     },
 };
 use microphong_sim::{
-    board::{self, Board, Until, build::program, elf::Elf},
+    board::{self, Board, Until, build, build::program, elf::Elf},
     scene::{self, SCRIPTED},
     shader::Shader,
+    stress::records::Records,
     verify::{self, Request},
 };
 use microphong_tests::message;
@@ -86,6 +87,38 @@ fn all_lights() -> Result {
             let stream = lights::lit("teapot", &[sky, ground, lights::spotlight()]).with_neighbours()?.as_bytes().to_vec();
             let report = verify::run(&Request { antialias: true, stream, ..request(board, "teapot", shader)? }, &elf, directory.path())?;
             assert_eq!(report.differing, 0, "{board} {}", shader.name());
+        }
+    }
+    Ok(())
+}
+
+/// Boards draw the pixels of the host, also with colours at corners, with textures, and with holes in them.
+#[test]
+fn colours() -> Result {
+    let directory = tempfile::tempdir()?;
+    let palette = [[255; 3], [0; 3], [200, 90, 30], [20, 220, 250], [90, 90, 90]];
+    let [_, (_, two), _, (_, near)] = vertex_colours::lights();
+    // The Cortex-M3 draws more of this in tests of its own, and the lm3s6965evb has no flash for it.
+    for board in [Board::Pico, Board::Mps2An386] {
+        let elf = build::firmware_with(board, "vertex-colours,textures,transparency")?;
+        let parts = |lights: &[_]| Records { lights: lights.to_vec(), ..vertex_colours::parts("teapot") };
+        for lights in [&two, &near] {
+            let streams = [
+                (
+                    "colours",
+                    vertex_colours::coloured(parts(lights), &palette, |triangle, corner| {
+                        ((triangle / 9 * 2 + usize::from(corner) / 40) % 5) as u8
+                    }),
+                ),
+                ("a texture", textures::textured(parts(lights), [5, 4], &palette, textures::anywhere)),
+                ("holes", transparency::pierced(parts(lights), 0, |k| k < 3, None)),
+            ];
+            for ((scene, stream), shader) in streams.iter().flat_map(|stream| vertex_colours::CORE.map(|shader| (stream, shader))) {
+                let stream = stream.as_bytes().to_vec();
+                let request =
+                    Request { board, scene: (*scene).to_owned(), stream, firmware_stream: None, shader, frames: 1, antialias: false };
+                assert_eq!(verify::run(&request, &elf, directory.path())?.differing, 0, "{board} {scene} {}", shader.name());
+            }
         }
     }
     Ok(())

@@ -100,7 +100,8 @@ fn compare(request: &Request, elf: &Path, artefacts: &Path) -> Result<Report> {
     let elf = Elf::read(elf)?.with_stream(&board_stream)?;
 
     let stream = host_stream.parse()?;
-    let how = How { shaders: &[*shader], frames, antialias: request.antialias, colours: false };
+    // Firmware without colours says so itself.
+    let how = How { shaders: &[*shader], frames, antialias: request.antialias, colours: true };
     let host = draw(*board, stream, how).context("the board cannot draw this stream")?;
     let recording = crate::run(request.board, &elf, Until::LastFrame(frames))?;
     check_log(&recording, frames)?;
