@@ -1235,7 +1235,7 @@ fn convert_inspect_and_render_work_together() {
     for file in [numbered("0000.png"), numbered("0002.png"), "good.png".into(), "f.apng".into()] {
         assert!(place.0.path().join(&file).is_file(), "{}", file.display());
     }
-    let count = scene::NAMES.len() + scene::VARIANTS.len() + scene::GALLERY.len() + scene::SCRIPTED.len();
+    let count = scene::NAMES.len() + scene::VARIANTS.len() + scene::ORDINARY.len() + scene::GALLERY.len() + scene::SCRIPTED.len();
     assert_eq!(place.succeeds(&["scenes"]).lines().count(), count);
     assert_eq!(place.succeeds(&["scenes", "--json"]).lines().count(), count);
 }

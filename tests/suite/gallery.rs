@@ -11,7 +11,7 @@ use microphong::{
 use microphong_sim::{
     bench::{Bench, Processor, board_styles::Program},
     compare::Reference,
-    gallery::{Exhibit, GALLERY, LOW_POLY},
+    gallery::{Exhibit, GALLERY, LOW_POLY, ORDINARY},
     mesh::{Coloured, Report},
     render::{self, Format, Settings, Style},
     scene::{self, Scene},
@@ -27,15 +27,46 @@ fn exhibit(name: &str) -> &'static Exhibit {
 /// Welding finds nothing to mend: surfaces are closed, their fronts are outside, and no polygon crosses itself.
 #[test]
 fn models_are_closed_and_have_few_triangles() {
-    for name in GALLERY {
+    for name in GALLERY.into_iter().chain(ORDINARY) {
         let imported = exhibit(name).imported().unwrap();
         let count = imported.mesh.triangles.len();
-        println!("{name}: {count} triangles, {} of one colour, {} colours", imported.painted.of_one_colour, imported.painted.colours);
         assert_eq!(imported.report, Report { welded: imported.report.welded, ..Report::default() }, "{name}");
-        assert!(imported.faults.is_empty() && imported.backs == 0 && imported.painted.triangles == count, "{name}");
+        assert!(imported.faults.is_empty() && imported.backs == 0, "{name}");
+        if ORDINARY.contains(&name) {
+            continue;
+        }
+        println!("{name}: {count} triangles, {} of one colour, {} colours", imported.painted.of_one_colour, imported.painted.colours);
+        assert!(imported.painted.triangles == count, "{name}");
         let most = if LOW_POLY.contains(&name) { 1200 } else { 2500 };
         assert!((300..=most).contains(&count), "{name}: {count} triangles");
     }
+}
+
+/// The scenes by which costs are judged are of the kinds that they are to be: a building of ten materials all of whose sides are flat, a figure of about
+/// 2,000 triangles, and a mechanical part of which many triangles are thin.
+#[test]
+fn ordinary_models_are_of_their_kinds() {
+    let mesh = |name| exhibit(name).imported().unwrap().mesh;
+    let stream = scene::load("building").unwrap().stream;
+    let building = stream.parse().unwrap();
+    assert_eq!((building.meshes.len(), building.materials.len()), (10, 10));
+    let flat = building.triangles.iter().filter(|triangle| {
+        let [a, b, c] = triangle.corners.map(|corner| building.vertices[usize::from(corner)].normal);
+        a == b && b == c
+    });
+    assert!(flat.count() * 100 > building.triangles.len() * 98);
+    assert!((1_800..=2_200).contains(&mesh("figure").triangles.len()));
+    let bracket = mesh("bracket");
+    let thin = bracket.triangles.iter().filter(|corners| {
+        let [a, b, c] = corners.map(|corner| bracket.positions[corner]);
+        let edges = [sub(b, a), sub(c, b), sub(a, c)].map(|edge| dot(edge, edge));
+        let normal = cross(sub(b, a), sub(c, a));
+        // The longest edge over the height above it.
+        edges.into_iter().fold(0.0, f64::max) > 4.0 * dot(normal, normal).sqrt()
+    });
+    let thin = thin.count();
+    println!("bracket: {thin} of {} triangles are thin", bracket.triangles.len());
+    assert!(thin * 4 > bracket.triangles.len());
 }
 
 /// The share counts both of all triangles, and of those whose fronts the first frame shows.

@@ -11,7 +11,7 @@ use microphong_sim::{
         peers::{self, Frame, PEERS, Picture, Program, lack::Lack},
     },
     board::{Blocks, Board, trace},
-    scene::{self, PEER, PORTFOLIO, Scene},
+    scene::{self, COMPARED, PEER, Scene},
     shader::Shader,
 };
 use rayon::prelude::*;
@@ -113,7 +113,7 @@ fn check_costs(frames: &[Frame], ours: &[(&str, u64)]) {
 fn they_draw_the_same_frames_and_ours_cost_less() {
     let programs = PROCESSORS.map(|processor| (processor, Program::build(processor).unwrap()));
     let program = callgrind::build().unwrap();
-    PORTFOLIO.into_par_iter().for_each(|name| {
+    COMPARED.into_par_iter().for_each(|name| {
         let scene = scene::load(name).unwrap();
         let drawn = programs.par_iter().map(|(processor, program)| (*processor, program.measure(&scene).unwrap()));
         let drawn: Vec<_> = drawn.collect();
@@ -151,7 +151,7 @@ fn what_they_cannot_draw_is_said() {
     assert_eq!(lacks("torus", blinn_phong), "parallel rays, the given ambient light");
 
     let obstacle = |name| peers::obstacle(&scene(name).parse().unwrap()).unwrap();
-    assert!(PORTFOLIO.into_iter().all(|name| obstacle(name).is_none()));
+    assert!(COMPARED.into_iter().all(|name| obstacle(name).is_none()));
     assert!(obstacle("triangle").is_some_and(|why| why.contains("local viewer")));
     assert!(obstacle("sphere-168").is_some_and(|why| why.contains("no ordinary scene")));
 }

@@ -1,6 +1,6 @@
 //! Scenes by name or from a file.
 
-pub use crate::gallery::{GALLERY, LOW_POLY};
+pub use crate::gallery::{GALLERY, LOW_POLY, ORDINARY};
 use crate::{
     bytes::StreamBytes,
     convert::{COPPER, Converted, DISTANCE, MARGIN, ORBIT, Options, SQUARE, Steps},
@@ -48,7 +48,9 @@ pub const VARIANTS: [&str; 3] = [CONVEX, PLASTIC, LIGHTS];
 pub const SCRIPTED: [&str; 3] = ["gauges", "board", "sensor"];
 
 /// Ordinary scenes of all kinds, by which costs are judged.
-pub const PORTFOLIO: [&str; 6] = [PEER, PLASTIC, LIGHTS, "teapot", "torus", "bunny"];
+pub const PORTFOLIO: [&str; 9] = [PEER, PLASTIC, LIGHTS, "teapot", "torus", "bunny", "building", "figure", "bracket"];
+/// The scenes of [`PORTFOLIO`] that have one material and no more lights and exponents than other renderers are compiled for.
+pub const COMPARED: [&str; 6] = [PEER, PLASTIC, LIGHTS, "teapot", "torus", "bunny"];
 
 /// A description of a built-in scene; empty for other names.
 #[must_use]
@@ -82,10 +84,11 @@ impl fmt::Display for Unknown {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         write!(
             f,
-            "unknown scene {:?}; name a .tri, .obj, .stl, .ply, .gltf, .glb, .3mf or .toml file, or one of: {}, {}, {}, {}",
+            "unknown scene {:?}; name a .tri, .obj, .stl, .ply, .gltf, .glb, .3mf or .toml file, or one of: {}, {}, {}, {}, {}",
             self.0,
             NAMES.join(", "),
             VARIANTS.join(", "),
+            ORDINARY.join(", "),
             GALLERY.join(", "),
             SCRIPTED.join(", ")
         )
@@ -127,7 +130,7 @@ pub fn load(name_or_path: &str) -> Result<Scene> {
 pub fn load_with(name_or_path: &str, options: &Options, are_given: bool, steps: &dyn Steps) -> Result<Scene> {
     let fixed = |kind, remedy| if are_given { Err(Misplaced { name: name_or_path.to_owned(), kind, remedy }) } else { Ok(()) };
     let built_in = "a built-in scene";
-    if NAMES.contains(&name_or_path) || VARIANTS.contains(&name_or_path) || GALLERY.contains(&name_or_path) {
+    if NAMES.contains(&name_or_path) || VARIANTS.contains(&name_or_path) || gallery::Exhibit::named(name_or_path).is_some() {
         fixed(built_in, LEAVE_OUT)?;
         let (stream, size) = self::built_in(name_or_path)?;
         return Ok(Scene { name: name_or_path.to_owned(), stream, size });
@@ -201,7 +204,7 @@ fn welded(text: &str) -> Result<Mesh> {
 
 fn built_in(name: &str) -> Result<(StreamBytes, (u32, u32))> {
     if let Some(exhibit) = gallery::Exhibit::named(name) {
-        return Ok((exhibit.stream()?, gallery::SIZE));
+        return exhibit.scene();
     }
     let (mesh, look, size) = match name {
         "teapot" => teapot()?,

@@ -33,8 +33,9 @@ use std::path::{Path, PathBuf};
 #[derive(clap::Args)]
 #[command(after_help = EXAMPLES)]
 pub(crate) struct Arguments {
-    /// .tri, .obj, .stl, .ply, .gltf, .glb, .3mf and .toml files, names of built-in scenes, or `all` for every built-in scene. By default six scenes of
-    /// common kinds: large and small triangles, in one hue, in blue with a white highlight, and under two coloured lights.
+    /// .tri, .obj, .stl, .ply, .gltf, .glb, .3mf and .toml files, names of built-in scenes, or `all` for every built-in scene. By default nine scenes of
+    /// common kinds: large and small triangles, in one hue, in blue with a white highlight, under two coloured lights, a building of ten materials, a figure
+    /// and a mechanical part.
     #[arg(value_name = "SCENE", default_values = scene::PORTFOLIO)]
     scenes: Vec<String>,
     /// Shading methods, separated by commas, or `all` for every method that can draw the scene.

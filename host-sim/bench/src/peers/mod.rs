@@ -21,7 +21,7 @@ use microphong_boards::{
     clocked,
     elf::Elf,
 };
-use microphong_models::scene::{self, PORTFOLIO, Scene};
+use microphong_models::scene::{self, COMPARED, Scene};
 use microphong_render::{render, shader::Shader};
 use serde::Serialize;
 use std::{array, ffi::OsString, path::PathBuf};
@@ -132,7 +132,7 @@ pub fn obstacle(stream: &Stream<'_>) -> Result<Option<&'static str>> {
     if stream.meshes.len() != 1 || stream.materials.len() != 1 {
         return Ok(Some("it has several meshes or materials"));
     }
-    for ordinary in PORTFOLIO {
+    for ordinary in COMPARED {
         if Shading::of(&scene::load(ordinary)?.stream.parse()?) == Shading::of(stream) {
             return Ok(None);
         }

@@ -60,6 +60,15 @@ impl Solid {
         Self(faces.into_iter().filter_map(polygon).collect())
     }
 
+    /// Joins rings as [`Self::loft`] does, and the last one to the first: a body with a hole through it.
+    pub(super) fn closed_loft(rings: &[Vec<V3>]) -> Self {
+        let around: Vec<_> = rings.iter().chain(rings.first()).cloned().collect();
+        let mut solid = Self::loft(&around);
+        // The ends meet.
+        solid.0.truncate(solid.0.len() - 2);
+        solid
+    }
+
     /// Turns a profile of radii and heights, from the bottom to the top, about the y axis.
     pub(super) fn lathe(profile: &[Point], sides: usize) -> Self {
         let ring = |&[radius, height]: &Point| circle(sides).map(|[x, z]| [radius * x, height, radius * z]).collect();
@@ -147,13 +156,19 @@ impl Solid {
         self.bent(|p| add(add(scale(x, p[0]), scale(y, p[1])), scale(z, p[2])))
     }
 
-    /// Adds its mirror image on the other side of the plane x = 0.
-    pub(super) fn paired(self) -> Self {
-        let mut image = self.clone().sized([-1.0, 1.0, 1.0]);
+    /// Its mirror image on the other side of the plane x = 0.
+    pub(super) fn mirrored(self) -> Self {
+        let mut image = self.sized([-1.0, 1.0, 1.0]);
         for polygon in &mut image.0 {
             polygon.corners.reverse();
             polygon.colours.reverse();
         }
+        image
+    }
+
+    /// Adds its mirror image on the other side of the plane x = 0.
+    pub(super) fn paired(self) -> Self {
+        let image = self.clone().mirrored();
         self.with(image)
     }
 
@@ -218,6 +233,21 @@ impl Solid {
         let all = || self.0.iter().flat_map(|polygon| &polygon.corners).map(|point| point[axis]);
         let (low, high) = (all().fold(f64::MAX, f64::min), all().fold(f64::MIN, f64::max));
         self.painted(|at| ramp(colours, (at.point[axis] - low) / (high - low)))
+    }
+
+    /// The polygons as a file has them that gives each colour a material in place of its corners; and the colours of the materials.
+    pub(super) fn soup_of_materials(mut self) -> (Soup, Vec<V3>) {
+        let mut materials = Vec::new();
+        for Polygon { colours, material, .. } in &mut self.0 {
+            *material = materials.iter().position(|colour| *colour == colours[0]).unwrap_or_else(|| {
+                materials.push(colours[0]);
+                materials.len() - 1
+            });
+        }
+        let mut soup = self.soup();
+        soup.colours.clear();
+        soup.faces.iter_mut().flat_map(|face| &mut face.corners).for_each(|corner| corner.colour = None);
+        (soup, materials)
     }
 
     /// The polygons as a file would have them.
