@@ -151,6 +151,15 @@ fn lit_range(cosines: &[i32; 3]) -> i32 {
     bright.max(0) - dark.max(0)
 }
 
+/// Whether the light of all vertices is the same.
+#[inline(always)]
+pub(super) fn is_uniform(setup: &TriangleSetup<'_>) -> bool {
+    let [a, b, c] = setup.corners.map(|corner| corner.light);
+    // Number by number: whole arrays are compared by a call.
+    let same = |[p, q, r, s]: [i32; 4], other: [i32; 4]| p == other[0] && q == other[1] && r == other[2] && s == other[3];
+    same(a, b) && same(a, c)
+}
+
 /// Whether a level of the corners may have been clamped at 255.
 #[inline(always)]
 fn is_clamped(levels: &[[i32; 3]; 3]) -> bool {
@@ -214,7 +223,7 @@ fn one_light(setup: &TriangleSetup<'_>, shading: &Shading<'_>, [towards, _]: &Co
     (!is_hidden).then_some(Choice::Linear(raise))
 }
 
-/// One colour or linear interpolation under two constant lights. One colour is chosen only where there is no highlight.
+/// One colour or linear interpolation under two constant lights. Where there is a highlight, one colour is chosen only if light is the same at all corners.
 #[inline(always)]
 fn two_lights(
     setup: &TriangleSetup<'_>,
@@ -227,7 +236,11 @@ fn two_lights(
     if brightest as i32 >= FULL && is_clamped(&corner_levels(setup, shading)) {
         return None;
     }
-    if !has_highlight {
+    if has_highlight {
+        if is_uniform(setup) && interval.half() < budget {
+            return Some(Choice::Solid(interval.middle()));
+        }
+    } else {
         let range = limits.diffuse_level(0, lit_range(towards)) + limits.diffuse_level(1, lit_range(other));
         if interval.half() + (range >> 1) < budget {
             return Some(Choice::Solid(interval.middle()));
@@ -340,13 +353,9 @@ fn summed_levels(setup: &TriangleSetup<'_>, shading: &Shading<'_>) -> [[i32; 3];
 /// [`Reflectance::sums_lights`](crate::lighting::reflectance::Reflectance::sums_lights).
 #[inline(never)]
 pub(super) fn uniform_parts(setup: &TriangleSetup<'_>, shading: &Shading<'_>) -> Option<Parts> {
-    let ([a, b, c], [x, y, z]) = (setup.corners, setup.vertices());
-    // Number by number: whole arrays are compared by a call.
-    let same_light =
-        |[r, g, b, sides]: [i32; 4], other: [i32; 4]| (r ^ other[0]) | (g ^ other[1]) | (b ^ other[2]) | (sides ^ other[3]) == 0;
+    let ([a, ..], [x, y, z]) = (setup.corners, setup.vertices());
     let same_normal = |[x, y, z]: [i16; 3], other: [i16; 3]| (x ^ other[0]) | (y ^ other[1]) | (z ^ other[2]) == 0;
-    let is_uniform =
-        same_light(a.light, b.light) && same_light(a.light, c.light) && same_normal(x.normal, y.normal) && same_normal(x.normal, z.normal);
+    let is_uniform = is_uniform(setup) && same_normal(x.normal, y.normal) && same_normal(x.normal, z.normal);
     is_uniform.then(|| summed_parts(shading, a, x, shading.reflectance.pure_ambient()))
 }
 

@@ -39,7 +39,7 @@ use crate::{
     raster::{band::Band, canvas::Canvas, pixel_shader::Solid},
 };
 pub use choice::{Choice, choose};
-use choice::{corner_levels, extremes, uniform_parts};
+use choice::{corner_levels, extremes, is_uniform, uniform_parts};
 use core::hint::black_box;
 
 static FACTS: Facts = Facts {
@@ -107,7 +107,8 @@ fn middle(setup: &TriangleSetup<'_>, shading: &Shading<'_>, raises: [i32; 3]) ->
         });
     }
     let levels = match (shading.vertices_have_cosines(), reflectance.three_channels()) {
-        // Where one colour is chosen under two lights, no highlight can be seen.
+        (false, _) if is_uniform(setup) => reflectance.two_lights(setup.corners[0].light),
+        // Otherwise one colour is chosen under two lights only where no highlight can be seen.
         (false, _) => reflectance.two_lights([half_way(setup, 0, 0), i32::MIN, half_way(setup, 2, 0), i32::MIN]),
         (true, true) => reflectance.reflection(half_way(setup, 0, 0), half_way(setup, 2, 0) as u32),
         (true, false) => [half_way(setup, 2, 0); 3],
