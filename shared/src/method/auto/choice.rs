@@ -52,9 +52,14 @@ impl Choice {
 }
 
 /// Chooses how to draw a triangle.
-#[inline(always)]
 #[must_use]
 pub fn choose<const QUADRATICS: bool>(setup: &TriangleSetup<'_>, shading: &Shading<'_>) -> Choice {
+    choose_lit::<QUADRATICS>(setup, shading, uniform_parts(setup, shading).as_ref())
+}
+
+/// Chooses how to draw a triangle whose [`uniform_parts`] are known.
+#[inline(always)]
+pub(super) fn choose_lit<const QUADRATICS: bool>(setup: &TriangleSetup<'_>, shading: &Shading<'_>, uniform: Option<&Parts>) -> Choice {
     // Decision: choice of auto.
     // In functions of their own: together they would need more registers than there are.
     if shading.vertices_have_cosines() {
@@ -62,7 +67,11 @@ pub fn choose<const QUADRATICS: bool>(setup: &TriangleSetup<'_>, shading: &Shadi
     } else if shading.reflectance.has_two_lights() && shading.lighting.is_constant() {
         under_two_lights::<QUADRATICS>(setup, shading)
     } else if shading.reflectance.sums_lights() {
-        under_summed_lights(setup, shading).unwrap_or(Choice::Phong)
+        let choice = match uniform {
+            Some(parts) => uniformly_lit(setup, parts, shading.budget),
+            None => under_summed_lights(setup, shading),
+        };
+        choice.unwrap_or(Choice::Phong)
     } else {
         Choice::Phong
     }
@@ -233,7 +242,7 @@ fn two_lights(
 ) -> Option<Choice> {
     let LinearBound { interval, brightest, has_highlight } = bounds;
     let Shading { error_bounds: limits, budget, .. } = *shading;
-    if brightest as i32 >= FULL && is_clamped(&corner_levels(setup, shading)) {
+    if brightest as i32 >= FULL && is_clamped(&corner_levels(setup, shading, None)) {
         return None;
     }
     if has_highlight {
@@ -246,7 +255,7 @@ fn two_lights(
             return Some(Choice::Solid(interval.middle()));
         }
     }
-    let range = || largest_range(corner_levels(setup, shading));
+    let range = || largest_range(corner_levels(setup, shading, None));
     linear_raise(setup, interval, budget, range).map(Choice::Linear)
 }
 
@@ -299,17 +308,31 @@ fn under_summed_lights(setup: &TriangleSetup<'_>, shading: &Shading<'_>) -> Opti
         return None;
     }
     let brightest = brightest + reflectance.summed_level(largest(&reflectance.pure_ambient())) as u32 + 1;
-    if brightest as i32 >= FULL && (is_clamped(&corner_levels(setup, shading)) || setup.albedos().is_some() && brightest > MOST_LIGHT) {
+    if brightest as i32 >= FULL && (is_clamped(&corner_levels(setup, shading, None)) || setup.albedos().is_some() && brightest > MOST_LIGHT)
+    {
         return None;
     }
     let range = || match has_highlight && varies {
-        true => largest_range(corner_levels(setup, shading)),
+        true => largest_range(corner_levels(setup, shading, None)),
         false => diffuse + setup.albedos().map_or(0, |albedos| ((Albedo::range(albedos) * brightest) >> SHARE) + 1),
     };
     if interval.half() + (diffuse >> 1) < budget && interval.half() + (range() >> 1) < budget {
         return Some(Choice::Solid(interval.middle()));
     }
     linear_raise(setup, interval, budget, range).map(Choice::Linear)
+}
+
+/// One colour or linear interpolation where these parts of light are the same all over the triangle, so that its colours alone make a difference.
+#[inline(never)]
+fn uniformly_lit(setup: &TriangleSetup<'_>, &parts: &Parts, budget: u32) -> Option<Choice> {
+    let Some(&[a, b, c]) = setup.albedos().filter(|albedos| Albedo::range(albedos) > 0) else { return Some(Choice::Solid(0)) };
+    let levels = [a.lit(parts), b.lit(parts), c.lit(parts)];
+    let range = largest_range(levels);
+    match () {
+        () if is_clamped(&levels) => None,
+        () if (range >> 1) < budget => Some(Choice::Solid(0)),
+        () => (setup.plane_error(range) <= budget).then_some(Choice::Linear(0)),
+    }
 }
 
 /// By how much levels are raised so that linear interpolation, whose errors lie in `interval`, keeps to the budget; `None` if it does not in
@@ -323,12 +346,12 @@ fn linear_raise(setup: &TriangleSetup<'_>, interval: Interval, budget: u32, rang
     (interval.half() <= rest).then(|| interval.raise(rest))
 }
 
-/// The levels at the corners under two constant lights, or where the diffuse light of several is summed.
+/// The levels at the corners under two constant lights, or where the diffuse light of several is summed. If light is `uniform`, it has these parts.
 #[inline(never)]
-pub(super) fn corner_levels(setup: &TriangleSetup<'_>, shading: &Shading<'_>) -> [[i32; 3]; 3] {
+pub(super) fn corner_levels(setup: &TriangleSetup<'_>, shading: &Shading<'_>, uniform: Option<&Parts>) -> [[i32; 3]; 3] {
     let ([a, b, c], reflectance) = (setup.corners, shading.reflectance);
     if reflectance.sums_lights() {
-        return summed_levels(setup, shading);
+        return summed_levels(setup, shading, uniform);
     }
     [reflectance.two_lights(a.light), reflectance.two_lights(b.light), reflectance.two_lights(c.light)]
 }
@@ -336,10 +359,10 @@ pub(super) fn corner_levels(setup: &TriangleSetup<'_>, shading: &Shading<'_>) ->
 /// [`corner_levels`] where the diffuse light of several lights is summed.
 // A call, so that two lights do not pay for its memory.
 #[inline(never)]
-fn summed_levels(setup: &TriangleSetup<'_>, shading: &Shading<'_>) -> [[i32; 3]; 3] {
+fn summed_levels(setup: &TriangleSetup<'_>, shading: &Shading<'_>, uniform: Option<&Parts>) -> [[i32; 3]; 3] {
     let ([a, b, c], reflectance) = (setup.corners, shading.reflectance);
-    let [r, g, b] = match uniform_parts(setup, shading) {
-        Some(parts) => [parts; 3],
+    let [r, g, b] = match uniform {
+        Some(&parts) => [parts; 3],
         None => {
             let ([x, y, z], ambient) = (setup.vertices(), reflectance.pure_ambient());
             [summed_parts(shading, a, x, ambient), summed_parts(shading, b, y, ambient), summed_parts(shading, c, z, ambient)]
@@ -349,10 +372,15 @@ fn summed_levels(setup: &TriangleSetup<'_>, shading: &Shading<'_>) -> [[i32; 3];
     [x.lit(r), y.lit(g), z.lit(b)]
 }
 
-/// The parts of light at the first corner where the diffuse light of several lights is summed, if they are those of all corners. Domain:
-/// [`Reflectance::sums_lights`](crate::lighting::reflectance::Reflectance::sums_lights).
-#[inline(never)]
+/// The parts of light where the light of several lights is summed, if they are the same all over the triangle and it has no texture.
+#[inline(always)]
 pub(super) fn uniform_parts(setup: &TriangleSetup<'_>, shading: &Shading<'_>) -> Option<Parts> {
+    if shading.reflectance.sums_lights() && !setup.has_texture() { uniform_sums(setup, shading) } else { None }
+}
+
+/// [`uniform_parts`] where light is summed.
+#[inline(never)]
+fn uniform_sums(setup: &TriangleSetup<'_>, shading: &Shading<'_>) -> Option<Parts> {
     let ([a, ..], [x, y, z]) = (setup.corners, setup.vertices());
     let same_normal = |[x, y, z]: [i16; 3], other: [i16; 3]| (x ^ other[0]) | (y ^ other[1]) | (z ^ other[2]) == 0;
     let is_uniform = is_uniform(setup) && same_normal(x.normal, y.normal) && same_normal(x.normal, z.normal);

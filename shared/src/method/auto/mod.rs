@@ -39,7 +39,7 @@ use crate::{
     raster::{band::Band, canvas::Canvas, pixel_shader::Solid},
 };
 pub use choice::{Choice, choose};
-use choice::{corner_levels, extremes, is_uniform, uniform_parts};
+use choice::{choose_lit, corner_levels, extremes, is_uniform, uniform_parts};
 use core::hint::black_box;
 
 static FACTS: Facts = Facts {
@@ -84,22 +84,22 @@ fn half_way_parts(setup: &TriangleSetup<'_>, reflectance: &Reflectance) -> Parts
 
 /// [`middle`] where the diffuse light of several lights is summed.
 #[inline(never)]
-fn summed_middle(setup: &TriangleSetup<'_>, shading: &Shading<'_>, raises: [i32; 3]) -> [i32; 3] {
-    if let Some(parts) = uniform_parts(setup, shading) {
+fn summed_middle(setup: &TriangleSetup<'_>, shading: &Shading<'_>, uniform: Option<&Parts>, raises: [i32; 3]) -> [i32; 3] {
+    if let Some(&parts) = uniform {
         let albedo = setup.albedos().map_or(Albedo::WHITE, Albedo::half_way);
         return zip(albedo.lit(parts), raises, |level, raise| (level + raise).clamp(0, FULL));
     }
-    let [red, green, blue] = channels(corner_levels(setup, shading)).map(extremes);
+    let [red, green, blue] = channels(corner_levels(setup, shading, None)).map(extremes);
     let middle = |[least, most]: [i32; 2], raise: i32| (((least + most) >> 1) + raise).clamp(0, FULL);
     zip([red, green, blue], raises, middle)
 }
 
 /// The means of the smallest and the largest level at the corners, raised.
 #[inline(never)]
-fn middle(setup: &TriangleSetup<'_>, shading: &Shading<'_>, raises: [i32; 3]) -> [i32; 3] {
+fn middle(setup: &TriangleSetup<'_>, shading: &Shading<'_>, uniform: Option<&Parts>, raises: [i32; 3]) -> [i32; 3] {
     let reflectance = shading.reflectance;
     if reflectance.sums_lights() {
-        return summed_middle(setup, shading, raises);
+        return summed_middle(setup, shading, uniform, raises);
     }
     if let Some(albedos) = setup.albedos() {
         return zip(Albedo::half_way(albedos).lit(half_way_parts(setup, &reflectance)), raises, |level, raise| {
@@ -118,7 +118,13 @@ fn middle(setup: &TriangleSetup<'_>, shading: &Shading<'_>, raises: [i32; 3]) ->
 
 /// The colour of these levels, by a table of colours if that is faster.
 #[inline(never)]
-fn solid<C: Pixel>(setup: &TriangleSetup<'_>, shading: &Shading<'_>, raise: i32, tables: MaterialTables<'_, C>) -> [C::Stored; 2] {
+fn solid<C: Pixel>(
+    setup: &TriangleSetup<'_>,
+    shading: &Shading<'_>,
+    uniform: Option<&Parts>,
+    raise: i32,
+    tables: MaterialTables<'_, C>,
+) -> [C::Stored; 2] {
     let reflectance = shading.reflectance;
     if shading.vertices_have_cosines() && setup.albedos().is_none() {
         if !reflectance.three_channels() {
@@ -128,7 +134,7 @@ fn solid<C: Pixel>(setup: &TriangleSetup<'_>, shading: &Shading<'_>, raise: i32,
             return tables.tint(reflectance.ramp_level(half_way(setup, 0, 0)) + raise);
         }
     }
-    tables.colour(middle(setup, shading, [raise; 3]))
+    tables.colour(middle(setup, shading, uniform, [raise; 3]))
 }
 
 /// Levels of each channel at the six nodes under two constant lights, Q9.7.
@@ -156,7 +162,9 @@ impl<const QUADRATICS: bool> Method for Auto<QUADRATICS> {
     }
 
     fn shade(&self, setup: &TriangleSetup<'_>, shading: &Shading<'_>, canvas: &mut dyn Canvas) -> u32 {
-        let choice = choose::<QUADRATICS>(setup, shading);
+        let uniform = uniform_parts(setup, shading);
+        let uniform = uniform.as_ref();
+        let choice = choose_lit::<QUADRATICS>(setup, shading, uniform);
         setup.count_on(canvas, |counts| choice.count(counts), 1);
         let reflectance = shading.reflectance;
         let raises = raises(choice, setup, shading);
@@ -164,9 +172,10 @@ impl<const QUADRATICS: bool> Method for Auto<QUADRATICS> {
             // Nothing is raised.
             (Choice::Solid(_), _) if setup.has_texture() => setup.draw_parts([half_way_parts(setup, &reflectance); 3], canvas),
             (Choice::Linear(_), _) if setup.has_texture() => setup.draw_parts(gouraud::corner_parts(setup, shading), canvas),
-            (Choice::Solid(_), _) => draw_uniform(setup, middle(setup, shading, raises), canvas),
+            (Choice::Solid(_), _) => draw_uniform(setup, middle(setup, shading, uniform, raises), canvas),
             (Choice::Linear(_), constant) => {
-                let levels = if constant.is_some() { gouraud::reflected(setup, &reflectance) } else { corner_levels(setup, shading) };
+                let levels =
+                    if constant.is_some() { gouraud::reflected(setup, &reflectance) } else { corner_levels(setup, shading, uniform) };
                 shading.draw_channels::<3, RANGE>(setup, &channels(levels), raises, canvas)
             }
             (Choice::Quadratic, Some(_)) if QUADRATICS => SixPoint.shade(setup, shading, canvas),
@@ -194,7 +203,9 @@ impl<const QUADRATICS: bool> Loops for Auto<QUADRATICS> {
         tables: MaterialTables<'_, C>,
         band: &mut Band<'_, C>,
     ) -> Option<u32> {
-        let choice = choose::<QUADRATICS>(setup, shading);
+        let uniform = uniform_parts(setup, shading);
+        let uniform = uniform.as_ref();
+        let choice = choose_lit::<QUADRATICS>(setup, shading, uniform);
         setup.count(band.top, choice.count(&mut band.counts), 1);
         // Under two lights vertices have levels of all channels, where there are three.
         let under_two = THREE && shading.constant.is_none();
@@ -207,9 +218,9 @@ impl<const QUADRATICS: bool> Loops for Auto<QUADRATICS> {
             return texture::fill(setup, shading, &parts, band);
         }
         match choice {
-            Choice::Solid(raise) => Some(setup.fill(|| Constant, Solid::face(solid(setup, shading, raise, tables)), band)),
+            Choice::Solid(raise) => Some(setup.fill(|| Constant, Solid::face(solid(setup, shading, uniform, raise, tables)), band)),
             Choice::Linear(raise) if under_two => {
-                let channels = || channels(corner_levels(setup, shading));
+                let channels = || channels(corner_levels(setup, shading, uniform));
                 Some(shading.fill_three(setup, channels, raise, |plane| plane, band))
             }
             Choice::Linear(raise) if THREE => Some(gouraud::draw_three(setup, shading, raise, tables, band)),
