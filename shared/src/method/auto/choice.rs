@@ -372,10 +372,12 @@ fn summed_levels(setup: &TriangleSetup<'_>, shading: &Shading<'_>, uniform: Opti
     [x.lit(r), y.lit(g), z.lit(b)]
 }
 
-/// The parts of light where the light of several lights is summed, if they are the same all over the triangle and it has no texture.
+/// The parts of light where the light of several constant lights is summed, if they are the same all over the triangle and it has no texture.
 #[inline(always)]
 pub(super) fn uniform_parts(setup: &TriangleSetup<'_>, shading: &Shading<'_>) -> Option<Parts> {
-    if shading.reflectance.sums_lights() && !setup.has_texture() { uniform_sums(setup, shading) } else { None }
+    // For a near viewer highlights differ where normals are the same.
+    let is_summed = shading.reflectance.sums_lights() && shading.lighting.is_constant();
+    if is_summed && !setup.has_texture() { uniform_sums(setup, shading) } else { None }
 }
 
 /// [`uniform_parts`] where light is summed.
