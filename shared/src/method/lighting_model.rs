@@ -21,7 +21,6 @@ use crate::{
         weakening::{Change, Way},
     },
     raster::canvas::{CHUNK, Canvas, SpanShader, SpanTarget, covered},
-    setup::steepness::Steepness,
 };
 
 /// Computes the light at a pixel from interpolated fields: `V` for each light, `D` for a light without a highlight, and `K` once for all lights.
@@ -53,8 +52,8 @@ pub enum Lit<V, D> {
 }
 
 /// The colour of a surface over a triangle.
-struct Coloured<'a, W> {
-    painter: Painter<'a, W>,
+struct Coloured<'a, C> {
+    painter: Painter<'a, C>,
     /// Where the sums of all highlights begin.
     dark: [i32; 3],
     /// For a run of pixels, the sums of all highlights.
@@ -62,14 +61,14 @@ struct Coloured<'a, W> {
 }
 
 /// What has the colours of the pixels of a triangle.
-enum Painter<'a, W> {
+enum Painter<'a, C> {
     /// Its corners: the shares of red and green, then that of blue and nothing, Q2.30.
-    Corners([W; 2]),
+    Corners([C; 2]),
     /// A texture.
     Texture(Placed<'a, PlacePatch>),
 }
 
-impl<W: Patch<Walker: Walker<Value = [u32; 2]>>> Coloured<'_, W> {
+impl<C: Patch<Walker: Walker<Value = [u32; 2]>>> Coloured<'_, C> {
     /// Multiplies the sums of ambient and diffuse light of the `visible` ones of `run` pixels by the colour, and adds highlights. The runs lie `rows` rows
     /// below the current one, left of the column `x`.
     fn paint(&mut self, levels: &mut [[i32; 3]; CHUNK], run: usize, visible: u32, [rows, x]: [i32; 2]) {
@@ -79,8 +78,8 @@ impl<W: Patch<Walker: Walker<Value = [u32; 2]>>> Coloured<'_, W> {
             *sums = zip(reflected, *highlights, i32::wrapping_add);
         };
         match &self.painter {
-            Painter::Corners(ways) => {
-                let mut walkers = ways.each_ref().map(|way| enter(way, rows, x));
+            Painter::Corners(shares) => {
+                let mut walkers = shares.each_ref().map(|share| enter(share, rows, x));
                 for (sums, highlights) in light {
                     walkers.iter_mut().for_each(Walker::step);
                     let [[red, green], [blue, _]] = walkers.each_ref().map(Walker::value);
@@ -109,11 +108,10 @@ fn share(walked: u32) -> i64 {
 }
 
 /// The shares of red and green, and of blue, over a triangle, whose colours are these at the six nodes of a quadratic.
-fn ways(colours: &[Albedo; 6]) -> [Way; 2] {
+fn shares(colours: &[Albedo; 6]) -> [QuadraticNodes<2>; 2] {
     let [a, b, c, ab, bc, ca] = map_six(*colours, |albedo| map(albedo.shares(), |share| share << (COSINE - 16)));
     let channel = |k: usize| [a[k], b[k], c[k], ab[k], bc[k], ca[k]];
-    let way = |nodes| Way::new(nodes, Steepness::NONE);
-    [way([channel(0), channel(1)]), way([channel(2), [0; 6]])]
+    [quadratic([channel(0), channel(1)]), quadratic([channel(2), [0; 6]])]
 }
 
 /// How a light changes over a triangle: nothing in a program without the feature.
@@ -132,7 +130,7 @@ fn changed<W: Walker<Value = [u32; 2]>>(changes: &Changes<'_, W>, reflection: Re
 }
 
 /// Shades a triangle under any lights on any material. Lights take turns over a run of pixels, so that each loop knows one light.
-struct ManyLights<'a, 's, K, P, D, W, F, S> {
+struct ManyLights<'a, 's, K, P, D, W, C, F, S> {
     reflectance: LitMaterial<'a>,
     model: F,
     /// The field that all lights share.
@@ -145,7 +143,7 @@ struct ManyLights<'a, 's, K, P, D, W, F, S> {
     /// Where the sums of all lights begin.
     ambient: [i32; 3],
     /// The colour of the surface, if the corners have colours.
-    colour: IfColoured<Option<Coloured<'a, W>>>,
+    colour: IfColoured<Option<Coloured<'a, C>>>,
     /// For a run of pixels, what all lights share, and `levels`, the sums of all lights. Both are written before they are read, and so
     /// cleared once a triangle and not once a span.
     shared: &'a mut [S; CHUNK],
@@ -163,12 +161,13 @@ fn enter<P: Patch>(patch: &P, rows: i32, x: i32) -> P::Walker {
     patch.enter(x)
 }
 
-impl<K, P, D, W, F> SpanShader for ManyLights<'_, '_, K, P, D, W, F, F::Common>
+impl<K, P, D, W, C, F> SpanShader for ManyLights<'_, '_, K, P, D, W, C, F, F::Common>
 where
     K: Patch,
     P: Patch,
     D: Patch,
     W: Patch<Walker: Walker<Value = [u32; 2]>>,
+    C: Patch<Walker: Walker<Value = [u32; 2]>>,
     F: LightingModel<<K::Walker as Walker>::Value, <P::Walker as Walker>::Value, <D::Walker as Walker>::Value>,
 {
     fn span(&mut self, rows: i32, end: i32, count: usize, target: &mut dyn SpanTarget) {
@@ -257,6 +256,7 @@ where
         self.lights.iter_mut().for_each(|(_, patch, ..)| patch.jump(rows));
         self.diffuse.iter_mut().for_each(|(patch, ..)| patch.jump(rows));
         self.ways().for_each(|way| way.jump(rows));
+        self.shares().for_each(|share| share.jump(rows));
         if let Some(place) = self.place() {
             place.jump(rows);
         }
@@ -267,22 +267,27 @@ where
         self.lights.iter_mut().for_each(|(_, patch, ..)| patch.step_row());
         self.diffuse.iter_mut().for_each(|(patch, ..)| patch.step_row());
         self.ways().for_each(Patch::step_row);
+        self.shares().for_each(Patch::step_row);
         if let Some(place) = self.place() {
             place.step_row();
         }
     }
 }
 
-impl<'a, 's, K, P, D, W, F, S> ManyLights<'a, 's, K, P, D, W, F, S> {
+impl<'a, 's, K, P, D, W, C, F, S> ManyLights<'a, 's, K, P, D, W, C, F, S> {
     /// What is walked of the lights that change.
-    fn ways(&mut self) -> impl Iterator<Item = &mut W> + use<'_, 'a, 's, K, P, D, W, F, S> {
+    fn ways(&mut self) -> impl Iterator<Item = &mut W> + use<'_, 'a, 's, K, P, D, W, C, F, S> {
         let changes =
             self.lights.iter_mut().flat_map(|(.., changes)| changes).chain(self.diffuse.iter_mut().flat_map(|(.., changes)| changes));
-        let colours = self.colour.iter_mut().flatten().flat_map(|colour| match &mut colour.painter {
-            Painter::Corners(ways) => ways.as_mut_slice(),
+        changes.filter_map(Change::way)
+    }
+
+    /// What is walked of the colours of the corners.
+    fn shares(&mut self) -> impl Iterator<Item = &mut C> + use<'_, 'a, 's, K, P, D, W, C, F, S> {
+        self.colour.iter_mut().flatten().flat_map(|colour| match &mut colour.painter {
+            Painter::Corners(shares) => shares.as_mut_slice(),
             Painter::Texture(..) => &mut [],
-        });
-        changes.filter_map(Change::way).chain(colours)
+        })
     }
 
     /// The place in a texture, if there is one.
@@ -339,7 +344,8 @@ impl Shading<'_> {
                 Lit::Diffuse(field) => Lit::Diffuse(common.with(field.surface())),
                 Lit::Fully(field) => Lit::Fully(common.with(field.surface())),
             };
-            return self.draw_changing(setup, of, |way: Way| common.with(way.surface()), common, model, canvas);
+            let walked = |way: Way| common.with(way.surface());
+            return self.draw_changing(setup, of, walked, |shares: QuadraticNodes<2>| common.with(shares), common, model, canvas);
         }
         let of = |source: &Source| match of(source) {
             Lit::Nowhere => Lit::Nowhere,
@@ -364,15 +370,18 @@ impl Shading<'_> {
         D: Patch,
         F: LightingModel<<K::Walker as Walker>::Value, <P::Walker as Walker>::Value, <D::Walker as Walker>::Value>,
     {
-        self.draw_changing(setup, of, |way: Way| fitted(&way, setup.gradients), common, model, canvas)
+        let painted = |shares: QuadraticNodes<2>| fitted(&shares, setup.gradients);
+        self.draw_changing(setup, of, |way: Way| fitted(&way, setup.gradients), painted, common, model, canvas)
     }
 
-    /// [`Self::draw_patches`], where `walked` makes polynomials of how range and cone weaken a light.
-    fn draw_changing<K, P, D, W, F>(
+    /// [`Self::draw_patches`], where `walked` makes polynomials of how range and cone weaken a light, and `painted` those of colours.
+    #[expect(clippy::too_many_arguments, reason = "each is one part of the light of a triangle")]
+    fn draw_changing<K, P, D, W, C, F>(
         &self,
         setup: &TriangleSetup<'_>,
         of: impl Fn(&Source) -> Lit<P, D>,
         walked: impl Fn(Way) -> W,
+        painted: impl Fn(QuadraticNodes<2>) -> C,
         common: K,
         model: F,
         canvas: &mut dyn Canvas,
@@ -382,6 +391,7 @@ impl Shading<'_> {
         P: Patch,
         D: Patch,
         W: Patch<Walker: Walker<Value = [u32; 2]>>,
+        C: Patch<Walker: Walker<Value = [u32; 2]>>,
         F: LightingModel<<K::Walker as Walker>::Value, <P::Walker as Walker>::Value, <D::Walker as Walker>::Value>,
     {
         let reflectance = self.reflectance;
@@ -423,7 +433,7 @@ impl Shading<'_> {
         let colour = setup.albedos.map(|albedos| {
             let painter = match setup.texture_patch().first().copied().flatten() {
                 Some(place) => Painter::Texture(place),
-                None => Painter::Corners(ways(&setup.colours_at_nodes(albedos?)).map(&walked)),
+                None => Painter::Corners(shares(&setup.colours_at_nodes(albedos?)).map(&painted)),
             };
             Some(Coloured { painter, dark, highlights: rooms.next()? })
         });

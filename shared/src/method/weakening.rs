@@ -29,19 +29,12 @@ use crate::{
     stream::record::Vertex,
 };
 
-/// A pair of fields, and how steeply light depends on them: the squared distance of a light, where the farthest corner has the distance 1, and the
-/// product of the way from the light and the axis of its cone; or two colours.
+/// The squared distance of a light, where the farthest corner has the distance 1, and the product of the way from the light and the axis of its cone;
+/// and how steeply light depends on them.
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct Way {
     nodes: QuadraticNodes<2>,
     steepness: Steepness,
-}
-
-impl Way {
-    /// The fields with these values at the nodes, Q2.30.
-    pub(crate) fn new(nodes: [[i32; 6]; 2], steepness: Steepness) -> Self {
-        Self { nodes: quadratic(nodes), steepness }
-    }
 }
 
 impl Field for Way {
@@ -92,7 +85,8 @@ impl<'f> Change<'f, Way> {
         let [a, b, c] = map(ways, |way| -((dot(axis, way) >> FRACTION) as i32));
         let middle = |a: i32, b: i32| (a >> 1) + (b >> 1);
         let along = [a, b, c, middle(a, b), middle(b, c), middle(c, a)];
-        Self::Weaker(Way::new([squares, along], Steepness::of_slope(shape.slope(nearness, least))), shape, nearness)
+        let steepness = Steepness::of_slope(shape.slope(nearness, least));
+        Self::Weaker(Way { nodes: quadratic([squares, along]), steepness }, shape, nearness)
     }
 }
 
