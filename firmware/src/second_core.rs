@@ -20,7 +20,7 @@ use microphong::{
     pixel::{PictureCrc, Pixel},
 };
 
-/// Bytes of its stack. Colours at corners and textures may be drawn by any method under any lights, which takes most.
+/// Bytes of its stack. Measured: the teapot by `auto` takes 8.8 KB; with colours at corners, `auto` takes 13 to 15 KB.
 pub const STACK: usize = if cfg!(feature = "vertex-colours") { 15 << 10 } else { 10 << 10 };
 
 /// Work for the second processor.

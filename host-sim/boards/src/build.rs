@@ -32,7 +32,7 @@ pub fn program(board: Board, name: &str) -> Result<PathBuf> {
 /// When the board has no memory for them, the target or the compiler is missing, or the firmware does not compile.
 pub fn antialias(board: Board) -> Result<PathBuf> {
     ensure!(board.smooths(), "the firmware of {board} draws no smooth outlines: they need more memory than it has");
-    release("antialias", &all(board.name(), "antialias"), board.target(), &format!("the firmware for {board} with smooth outlines"))
+    release("antialias", &all(board, "antialias"), board.target(), &format!("the firmware for {board} with smooth outlines"))
 }
 
 /// Builds the program `styles` for `board`, which draws in a style or pixel format that cargo features name, and returns the path of a copy of the ELF.
@@ -42,7 +42,7 @@ pub fn antialias(board: Board) -> Result<PathBuf> {
 /// When the board has no memory for it, the target or the compiler is missing, or the program does not compile.
 pub fn styles(board: Board, features: &str) -> Result<PathBuf> {
     ensure!(board.smooths(), "{board} has no program for styles: they need more memory than it has");
-    copied(board, "styles", "styles", features)
+    copied(board, "styles", &format!("styles,{features}"))
 }
 
 /// Builds the firmware of `board` with more cargo features than it has, and returns the path of a copy of the ELF, as [`styles`] does.
@@ -50,23 +50,22 @@ pub fn styles(board: Board, features: &str) -> Result<PathBuf> {
 /// # Errors
 /// When the target or the compiler is missing, or the firmware does not compile.
 pub fn firmware_with(board: Board, features: &str) -> Result<PathBuf> {
-    copied(board, board.name(), board.name(), features)
+    copied(board, board.name(), features)
 }
 
-/// Builds the program `name`, which needs the feature `own`, with `features` and returns the path of a copy.
-fn copied(board: Board, name: &str, own: &str, features: &str) -> Result<PathBuf> {
+/// Builds the program `name` with `features` and returns the path of a copy.
+fn copied(board: Board, name: &str, features: &str) -> Result<PathBuf> {
     static BUILDS: Mutex<()> = Mutex::new(());
     let _one_at_a_time = BUILDS.lock().unwrap_or_else(PoisonError::into_inner);
-    let built =
-        release(name, &all(board.name(), &format!("{own},{features}")), board.target(), &format!("{name} for {board} with {features}"))?;
+    let built = release(name, &all(board, features), board.target(), &format!("{name} for {board} with {features}"))?;
     let copy = built.with_file_name(format!("{name}-{board}-{}", features.replace(',', "-")));
     fs::copy(&built, &copy).with_context(|| format!("{} cannot be copied", built.display()))?;
     Ok(copy)
 }
 
-/// Features of the firmware as cargo takes them.
-fn all(board: &str, features: &str) -> String {
-    let names: Vec<_> = [board].into_iter().chain(features.split(',')).map(|name| format!("microphong-firmware/{name}")).collect();
+/// Features of the firmware for `board` as cargo takes them.
+fn all(board: Board, features: &str) -> String {
+    let names: Vec<_> = [board.name()].into_iter().chain(features.split(',')).map(|name| format!("microphong-firmware/{name}")).collect();
     names.join(",")
 }
 
