@@ -47,11 +47,14 @@ fn ordinary_models_are_of_their_kinds() {
     let stream = scene::load("building").unwrap().stream;
     let building = stream.parse().unwrap();
     assert_eq!((building.meshes.len(), building.materials.len()), (10, 10));
-    let is_flat = |triangle: &Triangle| {
-        let [a, b, c] = triangle.corners.map(|corner| building.vertices[usize::from(corner)].normal);
-        a == b && b == c
-    };
-    assert!(building.triangles.iter().all(is_flat));
+    for mesh in building.meshes {
+        let vertices = building.vertices_of(mesh).unwrap();
+        let is_flat = |triangle: &Triangle| {
+            let [a, b, c] = triangle.corners.map(|corner| vertices[usize::from(corner)].normal);
+            a == b && b == c
+        };
+        assert!(building.triangles_of(mesh).unwrap().iter().all(is_flat));
+    }
     assert!((1_800..=2_200).contains(&mesh("figure").triangles.len()));
     let bracket = mesh("bracket");
     let thin = bracket.triangles.iter().filter(|corners| {
