@@ -27,6 +27,7 @@ mod golden;
 mod hostile;
 mod independent;
 mod inner_loop;
+mod kernels;
 mod layers;
 mod levels;
 mod lights;

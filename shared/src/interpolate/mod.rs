@@ -43,6 +43,15 @@ pub trait Patch: Copy {
         false
     }
 
+    /// Whether the polynomial is linear in each channel, or there is none, so that kernels walk it.
+    const IS_LINEAR: bool = false;
+
+    /// The planes of which the polynomial consists, if it [`Self::IS_LINEAR`].
+    #[inline(always)]
+    fn planes(&mut self) -> &mut [microphong_kernels::Plane] {
+        &mut []
+    }
+
     /// The polynomial that has been saved in `words`.
     #[inline(always)]
     #[must_use]
@@ -126,6 +135,8 @@ impl Patch for Constant {
     fn load(_: &[u32]) -> Option<Self> {
         Some(Self)
     }
+
+    const IS_LINEAR: bool = true;
 }
 
 impl Walker for Constant {

@@ -1,5 +1,7 @@
 //! Linear fields.
 
+use zerocopy::{FromBytes, Immutable, IntoBytes, KnownLayout};
+
 use crate::{
     interpolate::{Checkerboard, HALF_RANGE, Patch, Walker, each_channel},
     setup::gradients::Gradients,
@@ -16,7 +18,8 @@ impl<const CH: usize> Default for Plane<CH> {
 }
 
 /// One channel: the value at column 0 of the current row, and the derivatives.
-#[derive(Clone, Copy, Debug)]
+#[derive(FromBytes, IntoBytes, Immutable, KnownLayout, Clone, Copy, Debug)]
+#[repr(C)]
 struct PlaneRow {
     c: i32,
     dx: i32,
@@ -105,6 +108,13 @@ impl<const CH: usize> Patch for Plane<CH> {
     }
 
     const WORDS: usize = 3 * CH;
+
+    const IS_LINEAR: bool = true;
+
+    #[inline(always)]
+    fn planes(&mut self) -> &mut [microphong_kernels::Plane] {
+        <[microphong_kernels::Plane]>::mut_from_bytes(self.0.as_mut_bytes()).unwrap_or_default()
+    }
 
     #[inline(always)]
     fn save(&self, words: &mut [u32]) -> bool {

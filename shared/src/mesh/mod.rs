@@ -84,7 +84,7 @@ impl<C: Pixel> Drawing<'_, C> {
                     // in memory.
                     self.draw_word_sized::<L, THREE>(triangle, key.word(), band).unwrap_or_else(|| self.draw_declined::<L>(triangle, band))
                 };
-                pixels = pixels.saturating_add(drawn);
+                pixels = pixels.wrapping_add(drawn);
             }
             match walk.next() {
                 Some(other) if self.pass.index(other) < self.pass.triangles.len() => key = other,

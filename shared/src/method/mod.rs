@@ -29,7 +29,7 @@ use crate::{
     features::{ALWAYS_CONSTANT, COLOURED, COLOURS, PERSPECTIVE, SKIPS, TEXTURES},
     format::{BIAS, CHANNEL, INTENSITY, LEVEL, NORMAL_LENGTH, WALK},
     geometry::viewport::first_centre,
-    interpolate::{Checkerboard, perspective::PerspectivePatch},
+    interpolate::{Checkerboard, each_channel, perspective::PerspectivePatch},
     lighting::{
         albedo::{Albedo, IfColoured},
         material_tables::MaterialTables,
@@ -548,9 +548,14 @@ pub struct Shading<'f> {
 }
 
 /// The nodes of each channel.
+#[inline(always)]
 fn channels<const N: usize>(levels: [[i32; 3]; N]) -> [[i32; N]; 3] {
-    // One loop: `map` of arrays goes through memory at opt-level "s".
     let mut channels = [[0; N]; 3];
+    if N == 3 {
+        // Written out: `map` of arrays goes through memory at opt-level "s".
+        each_channel::<N>(|node| [channels[0][node], channels[1][node], channels[2][node]] = levels[node]);
+        return channels;
+    }
     let [reds, greens, blues] = &mut channels;
     for (((red, green), blue), [r, g, b]) in reds.iter_mut().zip(greens).zip(blues).zip(levels) {
         (*red, *green, *blue) = (r, g, b);

@@ -31,7 +31,8 @@ use embedded_graphics_core::{
     },
     prelude::RgbColor,
 };
-use zerocopy::{FromBytes, Immutable, IntoBytes, KnownLayout};
+use microphong_kernels as kernels;
+use zerocopy::{FromBytes, Immutable, IntoBytes, KnownLayout, transmute_ref};
 
 /// A format in which a display stores pixels. It is implemented for the colours of embedded-graphics (for example `Rgb565`, `Gray4`,
 /// `BinaryColor`) and for [`Rgb565Be`] and [`Rgb332`].
@@ -194,6 +195,38 @@ pub trait Pixel: PixelFormat {
         let channel = |level: i32, depth: u32| shifted(level, depth).clamp(0, (1 << depth) - 1) as u32;
         Self::pack([channel(r, dr), channel(g, dg), channel(b, db)])
     }
+
+    /// Whether kernels in assembler draw this format. They do if a pixel is a half word of 5, 6 and 5 bits.
+    #[doc(hidden)]
+    const HAS_KERNELS: bool = false;
+
+    /// The pixels as kernels store them.
+    #[doc(hidden)]
+    #[inline(always)]
+    fn halfwords(_: &mut [Self]) -> Option<&mut [u16]> {
+        None
+    }
+
+    /// Two entries of a table as a kernel stores them.
+    #[doc(hidden)]
+    #[inline(always)]
+    fn halves(_: [Self::Stored; 2]) -> Option<[u16; 2]> {
+        None
+    }
+
+    /// Tables of colours as a kernel reads them.
+    #[doc(hidden)]
+    #[inline(always)]
+    fn table(_: &Self::Ramps) -> Option<&kernels::Table> {
+        None
+    }
+
+    /// Fills rows by three levels with [`CHANNEL`] fraction bits, see [`kernels::channels`].
+    #[doc(hidden)]
+    #[inline(always)]
+    fn fill_channels(_: kernels::Rows<'_>, _: &mut kernels::Plane, _: &mut [kernels::Plane; 3], _: i32) -> Option<u32> {
+        None
+    }
 }
 
 /// Half a step of a channel of `bits` bits, as a level with [`CHANNEL`] fraction bits.
@@ -267,7 +300,7 @@ fn halves(half: u16) -> [u16; 2] {
 
 /// Channels of 5, 6 and 5 bits in a word; the numbers are those of the high and of the low one.
 macro_rules! rgb565 {
-    ($format:ty, $high:literal, $low:literal) => {
+    ($format:ty, $order:expr, $high:literal, $low:literal) => {
         impl PixelFormat for $format {
             const GRAY: bool = false;
             const DEPTH: [u32; 3] = [5, 6, 5];
@@ -316,12 +349,39 @@ macro_rules! rgb565 {
             fn mixed_with(self, other: Self, share: u32, _: Option<&'static Gamma>) -> Self {
                 Self::from_stored(mixed_rgb565(self.stored(), other.stored(), share))
             }
+
+            const HAS_KERNELS: bool = true;
+
+            #[inline(always)]
+            fn halfwords(pixels: &mut [Self]) -> Option<&mut [u16]> {
+                Some(kernels::halfwords(pixels))
+            }
+
+            #[inline(always)]
+            fn halves(stored: [u16; 2]) -> Option<[u16; 2]> {
+                Some(stored)
+            }
+
+            #[inline(always)]
+            fn table(ramps: &InTurn<u16>) -> Option<&kernels::Table> {
+                Some(transmute_ref!(ramps))
+            }
+
+            #[inline(always)]
+            fn fill_channels(
+                rows: kernels::Rows<'_>,
+                depth: &mut kernels::Plane,
+                levels: &mut [kernels::Plane; 3],
+                raise: i32,
+            ) -> Option<u32> {
+                kernels::channels::<{ $order as u8 }>(rows, depth, levels, raise)
+            }
         }
     };
 }
 
-rgb565!(Rgb565, 0, 2);
-rgb565!(Bgr565, 2, 0);
+rgb565!(Rgb565, kernels::Format::Rgb, 0, 2);
+rgb565!(Bgr565, kernels::Format::Bgr, 2, 0);
 
 /// Red, green and blue of equal depth.
 macro_rules! rgb {
@@ -491,6 +551,28 @@ impl Pixel for Rgb565Be {
     #[inline]
     fn mixed_with(self, other: Self, share: u32, _: Option<&'static Gamma>) -> Self {
         Self(mixed_rgb565(u16::from_be(self.0), u16::from_be(other.0), share).to_be())
+    }
+
+    const HAS_KERNELS: bool = true;
+
+    #[inline(always)]
+    fn halfwords(pixels: &mut [Self]) -> Option<&mut [u16]> {
+        <[u16]>::mut_from_bytes(pixels.as_mut_bytes()).ok()
+    }
+
+    #[inline(always)]
+    fn halves([first, second]: [Self; 2]) -> Option<[u16; 2]> {
+        Some([first.0, second.0])
+    }
+
+    #[inline(always)]
+    fn table(ramps: &InTurn<Self>) -> Option<&kernels::Table> {
+        Some(transmute_ref!(ramps))
+    }
+
+    #[inline(always)]
+    fn fill_channels(rows: kernels::Rows<'_>, depth: &mut kernels::Plane, levels: &mut [kernels::Plane; 3], raise: i32) -> Option<u32> {
+        kernels::channels::<{ kernels::Format::Swapped as u8 }>(rows, depth, levels, raise)
     }
 }
 

@@ -6,6 +6,7 @@ use crate::pixel::{
     ramps::Ramps,
     steps,
 };
+use microphong_kernels::{self as kernels, Plane};
 
 /// Converts the value at a pixel to its colour.
 pub trait PixelShader<V>: ByRows {
@@ -26,6 +27,16 @@ pub trait PixelShader<V>: ByRows {
 
     /// The colour of a value.
     fn shade(&self, value: V) -> Self::Pixel;
+
+    /// Whether kernels in assembler know the shader and the pixel format.
+    const HAS_KERNEL: bool = false;
+
+    /// Fills rows by a kernel, if the processor has them. There is no plane of `depth` without a depth test. Returns the number of pixels between the
+    /// sides.
+    #[inline(always)]
+    fn fill(&self, _rows: kernels::Rows<'_>, _depth: &mut [Plane], _values: &mut [Plane]) -> Option<u32> {
+        None
+    }
 }
 
 /// One colour for all pixels, as tables of colours hold it for even rows and for odd ones.
@@ -63,6 +74,13 @@ impl<C: Pixel> PixelShader<()> for Solid<C> {
     fn shade(&self, (): ()) -> C {
         C::from_stored(self.0.now())
     }
+
+    const HAS_KERNEL: bool = C::HAS_KERNELS;
+
+    #[inline(always)]
+    fn fill(&self, rows: kernels::Rows<'_>, depth: &mut [Plane], _: &mut [Plane]) -> Option<u32> {
+        kernels::solid(rows, depth.first_mut(), C::halves(self.0.both())?)
+    }
 }
 
 /// One walked level, which is the index of a table of colours. Guards at both ends of the table replace a clamp.
@@ -78,6 +96,13 @@ impl<C: Pixel> PixelShader<[u32; 1]> for Ramp<'_, C> {
 
     fn shade(&self, [level]: [u32; 1]) -> C {
         C::from_stored(C::walked(self.0, level))
+    }
+
+    const HAS_KERNEL: bool = C::HAS_KERNELS;
+
+    #[inline(always)]
+    fn fill(&self, rows: kernels::Rows<'_>, depth: &mut [Plane], values: &mut [Plane]) -> Option<u32> {
+        kernels::ramp(rows, depth.first_mut(), values.first_mut()?, C::table(self.0)?)
     }
 }
 
@@ -118,6 +143,13 @@ impl<C: Pixel> PixelShader<[u32; 3]> for Rgb<C> {
     fn shade(&self, levels: [u32; 3]) -> C {
         let [r, g, b] = levels;
         C::mixed([r as i32, g as i32, b as i32])
+    }
+
+    const HAS_KERNEL: bool = C::HAS_KERNELS;
+
+    #[inline(always)]
+    fn fill(&self, rows: kernels::Rows<'_>, depth: &mut [Plane], values: &mut [Plane]) -> Option<u32> {
+        C::fill_channels(rows, depth.first_mut()?, values.first_chunk_mut()?, self.0.now())
     }
 }
 

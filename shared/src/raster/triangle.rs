@@ -6,6 +6,7 @@ use crate::{
     format::{DEPTH, DEPTH_NODE, DEPTH_WALK},
     geometry::projection::ScreenVertex,
     interpolate::{Constant, Patch, Walker, plane::Plane},
+    pixel::Pixel,
     raster::{
         active::{ActiveTriangle, ActiveTriangles},
         band::Band,
@@ -21,6 +22,8 @@ use crate::{
     },
 };
 use core::hint::black_box;
+use microphong_kernels as kernels;
+use zerocopy::transmute_mut;
 
 /// A triangle on the screen, its top corner first, clockwise on a screen whose y runs down.
 #[derive(Clone, Copy, Debug)]
@@ -215,6 +218,12 @@ impl ScreenTriangle {
         shader: T,
         band: &mut Band<'_, T::Pixel>,
     ) -> u32 {
+        let has_kernel = const { kernels::AVAILABLE && T::HAS_KERNEL && P::IS_LINEAR && (T::CHEAP || D::WORDS > 0) };
+        // Runs of transparent surfaces do not lie in the band, where kernels look for them.
+        let is_glass = TRANSPARENCY && band.sheet.iter().any(|sheet| sheet.glass.is_some());
+        if has_kernel && !is_glass {
+            return self.walk_by_kernel(gradients, depth, patch, shader, band);
+        }
         let sides = &self.rows.sides;
         let (mut row, mut stop) = (sides.row, sides.stop);
         let mut rows = Rows::new(band, row, sides.pair, depth, patch, shader);
@@ -225,7 +234,7 @@ impl ScreenTriangle {
             if row < stop {
                 rows.height = stop.wrapping_sub(row) as u32;
                 rows.count = rows.sides.columns();
-                if TRANSPARENCY && rows.sheet.iter().flatten().any(|sheet| sheet.glass.is_some()) {
+                if is_glass {
                     rows.fill_glass();
                 } else {
                     fill_rows(&mut rows);
@@ -243,6 +252,73 @@ impl ScreenTriangle {
             save_active((self.rows.key, sides.state(pair, T::ID)), &depth, &patch, &mut band.active);
         }
         filled
+    }
+
+    /// [`Self::walk`] by a kernel in assembler.
+    #[inline(always)]
+    fn walk_by_kernel<D: Patch, P: Patch, T: PixelShader<<P::Walker as Walker>::Value>>(
+        &self,
+        gradients: &Gradients,
+        mut depth: D,
+        mut patch: P,
+        mut shader: T,
+        band: &mut Band<'_, T::Pixel>,
+    ) -> u32 {
+        let RowRange { sides, key, resumed, .. } = &self.rows;
+        let rows_to_jump = sides.row.wrapping_sub(gradients.row());
+        if *resumed == 0 && rows_to_jump != 0 {
+            patch.jump(rows_to_jump);
+        }
+        shader.start_at(sides.row);
+        let mut pair = sides.pair;
+        let filled = self.fill_by_kernel(&mut pair, &mut depth, &mut patch, shader, band);
+        if *key != 0 && sides.goes_on() {
+            save_active((*key, sides.state(pair, T::ID)), &depth, &patch, &mut band.active);
+        }
+        filled
+    }
+
+    /// Fills the rows of a triangle by a kernel, and steps everything to the row behind them.
+    #[inline(always)]
+    fn fill_by_kernel<D: Patch, P: Patch, T: PixelShader<<P::Walker as Walker>::Value>>(
+        &self,
+        pair: &mut LeftRight,
+        depth: &mut D,
+        patch: &mut P,
+        shader: T,
+        band: &mut Band<'_, T::Pixel>,
+    ) -> u32 {
+        let sides = &self.rows.sides;
+        match sides.below() {
+            Some(turn) => fill_part([sides.row, sides.stop], pair, turn, (depth, patch), &shader, band),
+            None => self.fill_parts(pair, depth, patch, shader, band),
+        }
+    }
+
+    /// [`Self::fill_by_kernel`] if sides are computed again for some rows.
+    #[cold]
+    #[inline(never)]
+    fn fill_parts<D: Patch, P: Patch, T: PixelShader<<P::Walker as Walker>::Value>>(
+        &self,
+        pair: &mut LeftRight,
+        depth: &mut D,
+        patch: &mut P,
+        mut shader: T,
+        band: &mut Band<'_, T::Pixel>,
+    ) -> u32 {
+        let sides = &self.rows.sides;
+        let (mut row, mut stop, mut filled) = (sides.row, sides.stop, 0u32);
+        loop {
+            filled = filled.wrapping_add(fill_part([row, stop], pair, kernels::Turn::default(), (depth, patch), &shader, band));
+            if stop >= sides.end {
+                return filled;
+            }
+            if stop.wrapping_sub(row) & 1 != 0 {
+                shader.step_row();
+            }
+            row = stop;
+            stop = sides.next(row, pair, self.corners);
+        }
     }
 
     #[cold]
@@ -295,6 +371,22 @@ pub fn turn<A: Copy>([a, b, c]: [A; 3], by: usize) -> [A; 3] {
         1 => [b, c, a],
         _ => [c, a, b],
     }
+}
+
+/// Fills the rows from `row` to `stop`, and those below the turn, by a kernel.
+#[inline(always)]
+fn fill_part<D: Patch, P: Patch, T: PixelShader<<P::Walker as Walker>::Value>>(
+    [row, stop]: [i32; 2],
+    pair: &mut LeftRight,
+    turn: kernels::Turn,
+    (depth, patch): (&mut D, &mut P),
+    shader: &T,
+    band: &mut Band<'_, T::Pixel>,
+) -> u32 {
+    let Some(pixels) = T::Pixel::halfwords(band.pixels) else { return 0 };
+    let (first, height) = (row.wrapping_sub(band.top) as u32, stop.wrapping_sub(row) as u32);
+    let rows = kernels::Rows { pixels, depth: band.depth, width: band.width, first, sides: transmute_mut!(pair), height, turn };
+    shader.fill(rows, depth.planes(), patch.planes()).unwrap_or(0)
 }
 
 /// Saves a triangle for the next band, stepped to its first row there.

@@ -97,7 +97,7 @@ impl Edge {
     #[inline]
     #[must_use]
     pub(crate) fn walk(&self) -> EdgeX {
-        let step = slope(self.dx, self.dy.max(1));
+        let step = slope(self.dx, self.dy);
         // From the start to the first centre, less than a row: step down / 16, rounded down.
         let down = CENTRE.wrapping_sub(self.y) & (2 * CENTRE - 1);
         let across = (step >> SUBPIXEL).wrapping_mul(down).wrapping_add((step & (2 * CENTRE - 1)).wrapping_mul(down) >> SUBPIXEL);

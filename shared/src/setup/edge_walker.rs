@@ -2,6 +2,8 @@
 
 use zerocopy::{FromBytes, Immutable, IntoBytes, KnownLayout};
 
+use microphong_kernels::Turn;
+
 use crate::{
     format::SUBPIXEL,
     geometry::viewport::first_centre,
@@ -161,6 +163,13 @@ impl EdgeWalker {
         let LowerEdge { column, right } =
             if let Then::Lower(lower) = self.then { lower } else { LowerEdge { column: EdgeX::NONE, right: false } };
         EdgeState { pair, column, turn, low: self.low, right: right.into(), shader, unused: 0 }
+    }
+
+    /// The rows below the middle corner of edges that are stepped from end to end, for a kernel.
+    #[inline(always)]
+    pub(crate) fn below(&self) -> Option<Turn> {
+        let Then::Lower(LowerEdge { column: EdgeX { x, step }, right }) = self.then else { return None };
+        Some(Turn { height: self.end.wrapping_sub(self.stop) as u32, is_right: right, line: [x, step] })
     }
 
     /// Continues with the rows from `row`, to which `pair` has been stepped; returns one past the last row to which it can be stepped now.

@@ -1,0 +1,336 @@
+//! Kernels for processors with the whole of Thumb-2: Cortex-M3, M4, M7, M33.
+//!
+//! All kernels are built alike. The state of a row lies on the stack: first what changes from row to row, then by how much, then what stays the same. One
+//! instruction loads it, and one stores it stepped. The stack pointer addresses it, so that the pixel loop has all other registers. One register counts
+//! two numbers: the rows to come in its upper 10 bits, and the pixels that are done in the bits below.
+
+use crate::{COUNTED, Channels, Format, Job, Plane, Sides};
+use core::arch::naked_asm;
+
+/// One row less to come. If there is none, the rows below the turn are next, and another line takes the place of one side: it lies `$rest` bytes from
+/// the stack pointer, and the steps of the sides lie `$steps` bytes behind their columns.
+macro_rules! next_row {
+    ($rest:literal, $steps:literal) => {
+        concat!(
+            "5: subs r0, #{one}\n bcs 1b\n",
+            concat!("ldrd r2, r3, [sp, #", $rest, "]\n cbz r2, 6f\n"),
+            concat!("ldrd r4, r5, [sp, #", $rest, " + 8]\n"),
+            "add r0, r2\n add r3, sp\n",
+            concat!("str r4, [r3]\n str r5, [r3, #", $steps, "]\n"),
+            concat!("movs r2, #0\n str r2, [sp, #", $rest, "]\n b 1b\n"),
+            "6: add r0, #{one}",
+        )
+    };
+}
+
+/// Columns of the row in `r2` and `r3`, and the number of its pixels in `r6`. A row without pixels, or with one beyond the width, is left out.
+macro_rules! columns {
+    () => {
+        "lsrs r2, r2, #21\n lsrs r3, r3, #21\n subs r6, r3, r2\n ble 4f\n cmp r3, r1, lsr #1\n bhi 4f\n add r0, r6"
+    };
+}
+
+/// Fills rows by a table of 1024 colours, whose index is the upper 10 bits of a level.
+#[unsafe(naked)]
+pub(crate) unsafe extern "C" fn ramp(sides: &mut Sides, depth: &mut Plane, level: &mut Plane, job: &Job<*const u16>) -> u32 {
+    naked_asm!(
+        "push {{r0-r2, r4-r11, lr}}",
+        "add r12, r3, #16",
+        "ldm r12, {{r4-r8}}",
+        "push {{r4-r8}}",
+        "ldm r0, {{r4-r7}}",
+        "ldm r1, {{r8-r10}}",
+        "ldm r2, {{r11, r12, lr}}",
+        "push {{r9, r12}}",
+        "push {{r5, r7, r10, lr}}",
+        "push {{r4, r6, r8, r11}}",
+        "ldm r3, {{r0, r1, r12, lr}}",
+        "b 5f",
+        // Columns of left and right, depth, level; their steps to the next row; the steps of depth and level to the next column.
+        "1: ldm sp, {{r2-r11}}",
+        "add r6, r2",
+        "add r7, r3",
+        "add r8, r4",
+        "add r9, r5",
+        "stm sp, {{r6-r9}}",
+        columns!(),
+        "mla r4, r10, r3, r4",
+        "mla r5, r11, r3, r5",
+        "ldr r3, [sp, #40]",
+        "add r2, lr, r2, lsl #1",
+        "add r3, r2",
+        "2: sub r4, r10",
+        "ldrh r7, [r3, r6, lsl #1]",
+        "sub r5, r11",
+        "cmp r7, r4, lsr #16",
+        "bcs 3f",
+        "lsrs r7, r4, #16",
+        "strh r7, [r3, r6, lsl #1]",
+        "lsrs r7, r5, #22",
+        "ldrh r7, [r12, r7, lsl #1]",
+        "strh r7, [r2, r6, lsl #1]",
+        "3: subs r6, #1",
+        "bne 2b",
+        "4: add lr, r1",
+        next_row!(44, 16),
+        "pop {{r4, r6, r8, r11}}",
+        "ldrd r5, r7, [sp]",
+        "add sp, #44",
+        "pop {{r1-r3}}",
+        "stm r1, {{r4-r7}}",
+        "str r8, [r2]",
+        "str r11, [r3]",
+        "pop {{r4-r11, pc}}",
+        one = const 1 << COUNTED,
+    )
+}
+
+/// [`ramp`] without a depth test.
+#[unsafe(naked)]
+pub(crate) unsafe extern "C" fn ramp_alone(sides: &mut Sides, level: &mut Plane, job: &Job<*const u16>) -> u32 {
+    naked_asm!(
+        "push {{r0, r1, r4-r11, lr}}",
+        "add r12, r2, #20",
+        "ldm r12, {{r4-r7}}",
+        "push {{r4-r7}}",
+        "ldm r0, {{r4-r7}}",
+        "ldm r1, {{r8-r10}}",
+        "push {{r9}}",
+        "push {{r5, r7, r10}}",
+        "push {{r4, r6, r8}}",
+        "ldm r2, {{r0, r1, r12, lr}}",
+        "b 5f",
+        // Columns of left and right, level; their steps to the next row; the step of the level to the next column.
+        "1: ldm sp, {{r2-r8}}",
+        "add r5, r2",
+        "add r6, r3",
+        "add r7, r4",
+        "stm sp, {{r5-r7}}",
+        columns!(),
+        "mla r4, r8, r3, r4",
+        "add r2, lr, r2, lsl #1",
+        "2: sub r4, r8",
+        "lsrs r7, r4, #22",
+        "ldrh r7, [r12, r7, lsl #1]",
+        "strh r7, [r2, r6, lsl #1]",
+        "subs r6, #1",
+        "bne 2b",
+        "4: add lr, r1",
+        next_row!(28, 12),
+        "pop {{r4, r6, r8}}",
+        "ldrd r5, r7, [sp]",
+        "add sp, #32",
+        "pop {{r1, r2}}",
+        "stm r1, {{r4-r7}}",
+        "str r8, [r2]",
+        "pop {{r4-r11, pc}}",
+        one = const 1 << COUNTED,
+    )
+}
+
+/// Fills rows with one of two colours in turn, in the halves of a word; the lower one first.
+#[unsafe(naked)]
+pub(crate) unsafe extern "C" fn solid(sides: &mut Sides, depth: &mut Plane, job: &Job<u32>) -> u32 {
+    naked_asm!(
+        "push {{r0, r1, r4-r11, lr}}",
+        "add r12, r2, #16",
+        "ldm r12, {{r4-r8}}",
+        "push {{r5-r8}}",
+        "mov r11, r4",
+        "ldm r0, {{r4-r7}}",
+        "ldm r1, {{r8-r10}}",
+        "push {{r9}}",
+        "push {{r5, r7, r10}}",
+        "push {{r4, r6, r8}}",
+        "ldm r2, {{r0, r1, r12, lr}}",
+        "b 5f",
+        // Columns of left and right, depth; their steps to the next row; the step of depth to the next column.
+        "1: ldm sp, {{r2-r8}}",
+        "add r5, r2",
+        "add r6, r3",
+        "add r7, r4",
+        "stm sp, {{r5-r7}}",
+        columns!(),
+        "mla r4, r8, r3, r4",
+        "add r2, lr, r2, lsl #1",
+        "add r3, r2, r11",
+        "2: sub r4, r8",
+        "ldrh r7, [r3, r6, lsl #1]",
+        "cmp r7, r4, lsr #16",
+        "bcs 3f",
+        "lsrs r7, r4, #16",
+        "strh r7, [r3, r6, lsl #1]",
+        "strh r12, [r2, r6, lsl #1]",
+        "3: subs r6, #1",
+        "bne 2b",
+        "4: add lr, r1",
+        "ror r12, r12, #16",
+        next_row!(28, 12),
+        "pop {{r4, r6, r8}}",
+        "ldrd r5, r7, [sp]",
+        "add sp, #32",
+        "pop {{r1, r2}}",
+        "stm r1, {{r4-r7}}",
+        "str r8, [r2]",
+        "pop {{r4-r11, pc}}",
+        one = const 1 << COUNTED,
+    )
+}
+
+/// [`solid`] without a depth test.
+#[unsafe(naked)]
+pub(crate) unsafe extern "C" fn solid_alone(sides: &mut Sides, job: &Job<u32>) -> u32 {
+    naked_asm!(
+        "push {{r0, r4-r7, lr}}",
+        "add r12, r1, #20",
+        "ldm r12, {{r4-r7}}",
+        "push {{r4-r7}}",
+        "ldm r0, {{r4-r7}}",
+        "push {{r5, r7}}",
+        "push {{r4, r6}}",
+        "ldm r1, {{r0, r1, r12, lr}}",
+        "b 5f",
+        // Columns of left and right, and their steps to the next row.
+        "1: ldm sp, {{r2-r5}}",
+        "add r4, r2",
+        "add r5, r3",
+        "strd r4, r5, [sp]",
+        columns!(),
+        "add r2, lr, r2, lsl #1",
+        "2: strh r12, [r2, r6, lsl #1]",
+        "subs r6, #1",
+        "bne 2b",
+        "4: add lr, r1",
+        "ror r12, r12, #16",
+        next_row!(16, 8),
+        "pop {{r4, r6}}",
+        "ldrd r5, r7, [sp]",
+        "add sp, #24",
+        "pop {{r1}}",
+        "stm r1, {{r4-r7}}",
+        "pop {{r4-r7, pc}}",
+        one = const 1 << COUNTED,
+    )
+}
+
+/// Fills rows by three levels of 8 integer and 22 fraction bits, which are clamped and packed.
+#[unsafe(naked)]
+pub(crate) unsafe extern "C" fn channels<const FORMAT: u8>(
+    sides: &mut Sides,
+    depth: &mut Plane,
+    levels: &mut [Plane; 3],
+    job: &Channels,
+) -> u32 {
+    naked_asm!(
+        "push {{r0-r2, r4-r11, lr}}",
+        "ldm r3, {{r4-r12, lr}}",
+        // On the stack: delta, width, raise, count, and the line below the turn.
+        "push {{r6, r7, r10-r12, lr}}",
+        "push {{r5}}",
+        "push {{r9}}",
+        "mov lr, r4",
+        "mov r3, r8",
+        "ldm r2, {{r4-r12}}",
+        "ldr r2, [r1, #4]",
+        "push {{r2, r5, r8, r11}}",
+        "mov r11, r3",
+        "ldr r2, [r0, #4]",
+        "ldr r3, [r0, #12]",
+        "ldr r5, [r1, #8]",
+        "push {{r2, r3, r5, r6, r9, r12, lr}}",
+        "ldr r3, [r1]",
+        "ldr r2, [r0, #8]",
+        "ldr r1, [r0]",
+        "push {{r1-r4, r7, r10, r11}}",
+        "b 4f",
+        // Columns of left and right, depth, three levels, the place in memory; their steps to the next row.
+        "1: ldm sp, {{r0-r12, lr}}",
+        "add r7, r0",
+        "add r8, r1",
+        "add r9, r2",
+        "add r10, r3",
+        "add r11, r4",
+        "add r12, r5",
+        "add lr, r6",
+        "stm sp, {{r7-r12, lr}}",
+        "lsrs r0, r0, #21",
+        "lsrs r1, r1, #21",
+        "subs r7, r1, r0",
+        "ble 4f",
+        // Steps of depth and levels to the next column, the way from pixels to depth, the width.
+        "add lr, sp, #56",
+        "ldm lr, {{r8-r12, lr}}",
+        "cmp r1, lr",
+        "bhi 4f",
+        "mla r2, r8, r1, r2",
+        "mla r3, r9, r1, r3",
+        "mla r4, r10, r1, r4",
+        "mla r5, r11, r1, r5",
+        "add r6, r6, r0, lsl #1",
+        "ldrd r0, r1, [sp, #80]",
+        "add r12, r6",
+        "add r3, r3, r0, lsl #3",
+        "add r4, r4, r0, lsl #2",
+        "add r5, r5, r0, lsl #3",
+        "add r1, r7",
+        "str r1, [sp, #84]",
+        "2: sub r2, r8",
+        "ldrh r0, [r12, r7, lsl #1]",
+        "sub r3, r9",
+        "sub r4, r10",
+        "sub r5, r11",
+        "cmp r0, r2, lsr #16",
+        "bcs 3f",
+        "lsrs r0, r2, #16",
+        "strh r0, [r12, r7, lsl #1]",
+        "usat r0, #5, r3, asr #25",
+        "usat r1, #6, r4, asr #24",
+        "usat lr, #5, r5, asr #25",
+        ".if {format} == {bgr}",
+        "orr r1, r1, lr, lsl #6",
+        "orr r1, r0, r1, lsl #5",
+        ".else",
+        "orr r1, r1, r0, lsl #6",
+        "orr r1, lr, r1, lsl #5",
+        ".endif",
+        ".if {format} == {swapped}",
+        "rev16 r1, r1",
+        ".endif",
+        "strh r1, [r6, r7, lsl #1]",
+        "3: subs r7, #1",
+        "bne 2b",
+        "4: ldrd r1, r0, [sp, #80]",
+        "rsbs r1, r1, #0",
+        "subs r0, #{one}",
+        "strd r1, r0, [sp, #80]",
+        "bcs 1b",
+        // Below the turn another line is one of the sides.
+        "add r2, sp, #88",
+        "ldm r2, {{r2-r5}}",
+        "cbz r2, 6f",
+        "add r0, r2",
+        "str r0, [sp, #84]",
+        "add r3, sp",
+        "str r4, [r3]",
+        "str r5, [r3, #28]",
+        "movs r2, #0",
+        "str r2, [sp, #88]",
+        "b 1b",
+        "6: add r0, #{one}",
+        "ldm sp, {{r4-r9}}",
+        "ldrd r10, r11, [sp, #28]",
+        "add sp, #104",
+        "pop {{r1-r3}}",
+        "strd r4, r10, [r1]",
+        "strd r5, r11, [r1, #8]",
+        "str r6, [r2]",
+        "str r7, [r3]",
+        "str r8, [r3, #12]",
+        "str r9, [r3, #24]",
+        "pop {{r4-r11, pc}}",
+        one = const 1 << COUNTED,
+        format = const FORMAT,
+        bgr = const Format::Bgr as u8,
+        swapped = const Format::Swapped as u8,
+    )
+}

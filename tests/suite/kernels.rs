@@ -1,0 +1,36 @@
+//! The kernels in assembler store the same bits as loops in Rust, on emulated processors. That whole pictures are the same is tested in `verify`.
+
+use std::{path::Path, process::Command};
+
+/// Runs the comparison on this machine of QEMU.
+fn compare(target: &str, machine: &str) {
+    let firmware = Path::new(env!("CARGO_MANIFEST_DIR")).join("../firmware");
+    let built = Command::new(env!("CARGO"))
+        .current_dir(&firmware)
+        .args(["build", "--release", "--no-default-features", "-p", "kernels"])
+        .args(["--target", target, "--target-dir", "../target/firmware"])
+        .env_remove("RUSTFLAGS")
+        .env_remove("CARGO_ENCODED_RUSTFLAGS")
+        .output()
+        .expect("cargo starts");
+    assert!(built.status.success(), "{}", String::from_utf8_lossy(&built.stderr));
+    let program = firmware.join(format!("../target/firmware/{target}/release/kernels"));
+    let output = Command::new("qemu-system-arm")
+        .args(["-M", machine, "-nographic", "-semihosting", "-kernel"])
+        .arg(&program)
+        .output()
+        .expect("qemu-system-arm starts: it is in the package of that name");
+    let said = String::from_utf8_lossy(&output.stdout);
+    println!("{machine}: {said}");
+    assert!(output.status.success() && said.starts_with("140000 cases of "), "{machine}: {said}");
+}
+
+#[test]
+fn those_of_armv6m_store_what_loops_do() {
+    compare("thumbv6m-none-eabi", "microbit");
+}
+
+#[test]
+fn those_of_armv7m_store_what_loops_do() {
+    compare("thumbv7m-none-eabi", "mps2-an385");
+}
