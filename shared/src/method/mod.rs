@@ -412,6 +412,11 @@ impl TriangleSetup<'_> {
         Some(band.active.active_triangle(self.place?)?.edges.shader)
     }
 
+    /// What the band above has saved of the choice of `auto`; `None` if the triangle is not active.
+    pub(crate) fn saved_choice<C>(&self, band: &Band<'_, C>) -> Option<u16> {
+        Some(band.active.active_triangle(self.place?)?.choice)
+    }
+
     /// Draws the triangle by `shader`, which begins on the row of the anchor. Returns the number of pixels in `canvas`.
     pub(crate) fn draw_spans(&self, shader: &mut dyn SpanShader, canvas: &mut dyn Canvas) -> u32 {
         self.screen.draw_spans(self.gradients, shader, canvas)

@@ -18,7 +18,9 @@ pub struct ActiveTriangle {
     pub(crate) key: u32,
     pub(crate) edges: EdgeState,
     /// Not 0 if the depth has been saved.
-    has_depth: u32,
+    has_depth: u16,
+    /// What `auto` has chosen for the triangle; 0 for other methods.
+    pub(crate) choice: u16,
     /// The plane of depth, on the first row of the next band.
     depth: [u32; 3],
     /// The saved patch.
@@ -27,7 +29,7 @@ pub struct ActiveTriangle {
 
 impl ActiveTriangle {
     /// No triangle; all zeros, which takes no flash in static memory.
-    pub const EMPTY: Self = Self { key: 0, edges: EdgeState::NONE, has_depth: 0, depth: [0; 3], words: [0; Self::WORDS] };
+    pub const EMPTY: Self = Self { key: 0, edges: EdgeState::NONE, has_depth: 0, choice: 0, depth: [0; 3], words: [0; Self::WORDS] };
 
     /// Words of a patch that can be saved: a quadratic in three channels.
     pub(crate) const WORDS: usize = 18;
@@ -35,7 +37,7 @@ impl ActiveTriangle {
     /// Saves a triangle that has been stepped to the end of a band; false if the patch cannot be saved.
     #[inline(always)]
     pub(crate) fn save<D: Patch, P: Patch>(&mut self, (key, edges): (u32, EdgeState), depth: &D, patch: &P) -> bool {
-        self.has_depth = u32::from(D::WORDS > 0 && depth.save(&mut self.depth));
+        self.has_depth = u16::from(D::WORDS > 0 && depth.save(&mut self.depth));
         (self.key, self.edges) = (key, edges);
         patch.save(&mut self.words)
     }
@@ -66,13 +68,15 @@ pub struct ActiveTriangles<'a> {
     queue: QueueState,
     /// Number of triangles that found the queue full.
     overflow: u32,
+    /// What `auto` has chosen for the triangle that is drawn, [`ActiveTriangle::choice`].
+    pub(crate) choice: u16,
 }
 
 impl<'a> ActiveTriangles<'a> {
     /// The queue in this state.
     #[must_use]
     pub fn new(active_triangles: &'a mut [ActiveTriangle], queue: QueueState) -> Self {
-        Self { active_triangles, queue, overflow: 0 }
+        Self { active_triangles, queue, overflow: 0, choice: 0 }
     }
 
     /// Number of triangles of this band that found the queue full.
@@ -115,6 +119,7 @@ impl<'a> ActiveTriangles<'a> {
         } else if let Some(active_triangle) = self.active_triangles.get_mut(place)
             && fill(active_triangle)
         {
+            active_triangle.choice = self.choice;
             self.queue.count = count + 1;
         }
     }

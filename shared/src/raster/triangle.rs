@@ -264,16 +264,28 @@ impl ScreenTriangle {
         mut shader: T,
         band: &mut Band<'_, T::Pixel>,
     ) -> u32 {
-        let RowRange { sides, key, resumed, .. } = &self.rows;
-        let rows_to_jump = sides.row.wrapping_sub(gradients.row());
-        if *resumed == 0 && rows_to_jump != 0 {
-            patch.jump(rows_to_jump);
+        let row = self.rows.sides.row;
+        if self.rows.resumed == 0 && row != gradients.row() {
+            patch.jump(row.wrapping_sub(gradients.row()));
         }
-        shader.start_at(sides.row);
+        shader.start_at(row);
+        self.fill_and_save(&mut depth, &mut patch, shader, band)
+    }
+
+    /// Fills rows by a kernel, and saves the triangle if it goes on.
+    #[inline(never)]
+    fn fill_and_save<D: Patch, P: Patch, T: PixelShader<<P::Walker as Walker>::Value>>(
+        &self,
+        depth: &mut D,
+        patch: &mut P,
+        shader: T,
+        band: &mut Band<'_, T::Pixel>,
+    ) -> u32 {
+        let RowRange { sides, key, .. } = &self.rows;
         let mut pair = sides.pair;
-        let filled = self.fill_by_kernel(&mut pair, &mut depth, &mut patch, shader, band);
+        let filled = self.fill_by_kernel(&mut pair, depth, patch, shader, band);
         if *key != 0 && sides.goes_on() {
-            save_active((*key, sides.state(pair, T::ID)), &depth, &patch, &mut band.active);
+            save_active((*key, sides.state(pair, T::ID)), depth, patch, &mut band.active);
         }
         filled
     }

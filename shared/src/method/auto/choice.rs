@@ -3,7 +3,7 @@
 use super::costs::SAVINGS;
 use crate::{
     features::PERSPECTIVE,
-    format::FULL,
+    format::{ErrorBudget, FULL, LARGEST_BUDGET, LEVEL},
     geometry::projection::ScreenVertex,
     lighting::{
         albedo::{Albedo, Parts, SHARE},
@@ -38,6 +38,32 @@ pub enum Choice {
 }
 
 impl Choice {
+    /// The choice in 16 bits, not all of which are 0, for the bands below. Levels by which light is raised are at most the largest budget.
+    pub(super) fn packed(self) -> u16 {
+        const { assert!((LARGEST_BUDGET.to_bits() as u32) << (LEVEL - ErrorBudget::FRAC_NBITS) < 1 << 12) };
+        let (kind, raise) = match self {
+            Self::Solid(raise) => (1, raise),
+            Self::Linear(raise) => (2, raise),
+            Self::Quadratic => (3, 0),
+            Self::Cosines => (4, 0),
+            Self::Phong => (5, 0),
+        };
+        (raise << 3) as u16 | kind
+    }
+
+    /// The choice that has been packed; `None` if there is none.
+    pub(super) fn unpacked(bits: u16) -> Option<Self> {
+        let raise = i32::from(bits as i16 >> 3);
+        match bits & 7 {
+            1 => Some(Self::Solid(raise)),
+            2 => Some(Self::Linear(raise)),
+            3 => Some(Self::Quadratic),
+            4 => Some(Self::Cosines),
+            5 => Some(Self::Phong),
+            _ => None,
+        }
+    }
+
     /// The count of triangles that are drawn in this way.
     pub(super) fn count(self, counts: &mut Counts) -> &mut u32 {
         let [solid, linear, quadratic, cosines, phong] = &mut counts.choices;

@@ -205,7 +205,10 @@ impl<const QUADRATICS: bool> Loops for Auto<QUADRATICS> {
     ) -> Option<u32> {
         let uniform = uniform_parts(setup, shading);
         let uniform = uniform.as_ref();
-        let choice = choose_lit::<QUADRATICS>(setup, shading, uniform);
+        // The band above has chosen already.
+        let choice = setup.saved_choice(band).and_then(Choice::unpacked);
+        let choice = choice.unwrap_or_else(|| choose_lit::<QUADRATICS>(setup, shading, uniform));
+        band.active.choice = choice.packed();
         setup.count(band.top, choice.count(&mut band.counts), 1);
         // Under two lights vertices have levels of all channels, where there are three.
         let under_two = THREE && shading.constant.is_none();
