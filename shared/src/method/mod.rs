@@ -555,12 +555,18 @@ pub struct Shading<'f> {
 /// The nodes of each channel.
 #[inline(always)]
 fn channels<const N: usize>(levels: [[i32; 3]; N]) -> [[i32; N]; 3] {
-    let mut channels = [[0; N]; 3];
-    if N == 3 {
-        // Written out: `map` of arrays goes through memory at opt-level "s".
-        each_channel::<N>(|node| [channels[0][node], channels[1][node], channels[2][node]] = levels[node]);
-        return channels;
+    if N != 3 {
+        return channels_of_many(levels);
     }
+    // Written out: `map` of arrays goes through memory at opt-level "s".
+    let mut channels = [[0; N]; 3];
+    each_channel::<N>(|node| [channels[0][node], channels[1][node], channels[2][node]] = levels[node]);
+    channels
+}
+
+/// [`channels`] of more nodes, by one loop.
+fn channels_of_many<const N: usize>(levels: [[i32; 3]; N]) -> [[i32; N]; 3] {
+    let mut channels = [[0; N]; 3];
     let [reds, greens, blues] = &mut channels;
     for (((red, green), blue), [r, g, b]) in reds.iter_mut().zip(greens).zip(blues).zip(levels) {
         (*red, *green, *blue) = (r, g, b);
