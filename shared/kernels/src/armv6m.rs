@@ -1,8 +1,9 @@
 //! Kernels for the small instruction set of Armv6-M: Cortex-M0, M0+, M1.
 //!
 //! All kernels are built alike. The state of a row lies on the stack: first what changes from row to row, then by how much, then what stays the same. Only
-//! eight registers take part in most operations, so the others hold what is added or compared: in each kernel `r8` and those behind it the negative steps
-//! to the next column, `r10` the place behind the last row above the turn, `r11` the width, `r12` the place of the row, and `lr` the pixels that are done.
+//! eight registers take part in most operations, so the others hold what is added or compared. Unless a kernel says otherwise, `r8` and `r9` hold the
+//! negative steps to the next column or colours, `r10` the place behind the last row above the turn, `r11` the width, `r12` the place of the row, and `lr`
+//! the number of pixels that are done.
 
 use crate::{Channels, Format, Job, Plane, Sides};
 use core::arch::naked_asm;
@@ -22,8 +23,8 @@ macro_rules! job {
     };
 }
 
-/// Steps to the next row. If it lies below the turn, another line takes the place of one side: it lies `$rest` bytes from the stack pointer, and the steps
-/// of the sides lie `$steps` bytes behind their columns.
+/// Goes on with the next row. If it lies below the turn, another line takes the place of one side. At `$rest` bytes from the stack pointer lie the number
+/// of rows below the turn, the side, and the line. The steps of the sides lie `$steps` bytes behind their columns.
 macro_rules! next_row {
     ($rest:literal, $steps:literal) => {
         concat!(

@@ -1,14 +1,14 @@
 //! Kernels for processors with the whole of Thumb-2: Cortex-M3, M4, M7, M33.
 //!
 //! All kernels are built alike. The state of a row lies on the stack: first what changes from row to row, then by how much, then what stays the same. One
-//! instruction loads it, and one stores it stepped. The stack pointer addresses it, so that the pixel loop has all other registers. One register counts
-//! two numbers: the rows to come in its upper 10 bits, and the pixels that are done in the bits below.
+//! instruction loads it, and one stores it stepped. The stack pointer addresses it, so that the pixel loop has all other registers. One word counts two numbers:
+//! the rows to come in its upper 10 bits, and the pixels that are done in the bits below. It is in `r0`, and on the stack in `channels`.
 
 use crate::{COUNTED, Channels, Format, Job, Plane, Sides};
 use core::arch::naked_asm;
 
-/// One row less to come. If there is none, the rows below the turn are next, and another line takes the place of one side: it lies `$rest` bytes from
-/// the stack pointer, and the steps of the sides lie `$steps` bytes behind their columns.
+/// Counts down the rows to come. If there are none, the rows below the turn are next, and another line takes the place of one side. At `$rest` bytes from
+/// the stack pointer lie the number of these rows, the side, and the line. The steps of the sides lie `$steps` bytes behind their columns.
 macro_rules! next_row {
     ($rest:literal, $steps:literal) => {
         concat!(

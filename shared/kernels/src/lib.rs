@@ -4,9 +4,10 @@
 //! without a depth test. A compiler keeps much of the state of such loops in memory and loads it word by word. The kernels load the state of a row by
 //! one instruction, step all of it, and store it by one instruction.
 //!
-//! This is the only crate of the renderer with `unsafe` code. [`Rows`] are checked once for each call: all of them lie within the slices. A
+//! This is the only crate of the library with `unsafe` code. [`Rows`] are checked once for each call: all of them lie within the slices. A
 //! kernel compares the right side with the width in each row. So whatever the sides are, it reads and writes nothing else. On processors without
-//! kernels ([`AVAILABLE`]) every function returns `None`, and `microphong` fills the rows by its loops in Rust, which store the same bits.
+//! kernels ([`AVAILABLE`]) every function returns `None`, and `microphong` fills the rows by its loops in Rust. These store the same bits if all sides
+//! lie within the width.
 
 #![no_std]
 
@@ -55,9 +56,9 @@ pub struct Turn {
 pub struct Rows<'a> {
     /// The pixels of the band, row by row.
     pub pixels: &'a mut [u16],
-    /// The inverse depth of each of them. Not used without a depth test.
+    /// The inverse depth of each of them. It is not used without a depth test.
     pub depth: &'a mut [u16],
-    /// Columns of the band.
+    /// Columns of the band. If there are none, nothing is drawn, and the sides have no meaning afterwards.
     pub width: usize,
     /// Rows of the band above the first one.
     pub first: u32,
@@ -80,7 +81,7 @@ pub enum Format {
     Swapped,
 }
 
-/// The value of a block where there are kernels, otherwise `None`.
+/// Evaluates a block on processors with kernels, otherwise it is `None`.
 macro_rules! by_kernel {
     (($rows:ident, $($argument:ident),*), $block:block) => {{
         #[cfg(kernels)]
@@ -110,6 +111,8 @@ macro_rules! halfword {
             impl sealed::Sealed for $pixel {}
             impl Halfword for $pixel {}
             const _: () = assert!(size_of::<$pixel>() == size_of::<u16>() && align_of::<$pixel>() == align_of::<u16>());
+            // A type with invalid values would store `None` as one of them.
+            const _: () = assert!(size_of::<Option<$pixel>>() > size_of::<$pixel>());
         )*
     };
 }
@@ -123,7 +126,7 @@ pub fn halfwords<C: Halfword>(pixels: &mut [C]) -> &mut [u16] {
     unsafe { core::slice::from_raw_parts_mut(pixels.as_mut_ptr().cast(), pixels.len()) }
 }
 
-/// Bits of the number of pixels in a count of rows and pixels. They hold twice [`MAX_HEIGHT`] rows of [`MAX_WIDTH`] pixels.
+/// A count has a number of pixels in so many lower bits, and a number of rows above. They hold twice [`MAX_HEIGHT`] rows of [`MAX_WIDTH`] pixels.
 #[cfg(kernels)]
 const COUNTED: u32 = 22;
 
@@ -160,7 +163,7 @@ struct Job<T> {
 struct Channels {
     pitch: usize,
     width: usize,
-    /// Added to the levels of a row, and subtracted in the next one, in steps of a channel of eight bits. The sign changes before each row.
+    /// Added to the levels of a row 8, 4 and 8 times, and subtracted in the next one. The sign changes before each row.
     raise: i32,
     /// Rows above the turn, from bit [`COUNTED`] on.
     count: u32,
@@ -173,9 +176,9 @@ impl Rows<'_> {
     #[inline(always)]
     fn lines(&mut self, has_depth: bool) -> Option<Lines> {
         let (first, above, below) = (self.first, self.height, self.turn.height);
-        // So small that no sum or product overflows.
+        // If so, no sum or product below has overflowed.
         let is_small = first <= MAX_FIRST && above | below <= MAX_HEIGHT && self.width <= MAX_WIDTH;
-        let end = self.width.wrapping_mul((first + above + below) as usize);
+        let end = self.width.wrapping_mul(first.wrapping_add(above).wrapping_add(below) as usize);
         let fits = end <= self.pixels.len() && (!has_depth || end <= self.depth.len());
         let (pixels, depth) = (self.pixels.as_mut_ptr(), self.depth.as_mut_ptr());
         (is_small && fits).then(|| Lines {
@@ -195,13 +198,14 @@ impl Rows<'_> {
     }
 }
 
-/// Fills `rows` by a level and a table of colours, with a depth test if there is a plane of depth. Returns the number of pixels between the sides, or
-/// `None` if there is no kernel for this processor.
+/// Fills `rows` by a level and a table of colours, with a depth test if there is a plane of depth. Returns the number of pixels between the sides. If the
+/// rows do not lie within the slices, or a limit is exceeded, it is 0, and nothing changes. Returns `None` if there is no kernel for this processor.
 #[inline(always)]
 #[must_use]
 pub fn ramp(rows: Rows<'_>, depth: Option<&mut Plane>, level: &mut Plane, colours: &Table) -> Option<u32> {
     by_kernel!((rows, depth, level, colours), {
-        // SAFETY: all rows lie within the slices, columns are compared with the width, and an index of 10 bits lies within the table.
+        // SAFETY: all rows lie within both slices, whose addresses are exposed; columns are compared with the width; and an index of 10 bits lies within the
+        // table.
         match (rows.job(depth.is_some(), colours.as_ptr()), depth) {
             (Some(job), Some(depth)) => unsafe { processor::ramp(rows.sides, depth, level, &job) },
             (Some(job), None) => unsafe { processor::ramp_alone(rows.sides, level, &job) },
@@ -216,7 +220,7 @@ pub fn ramp(rows: Rows<'_>, depth: Option<&mut Plane>, level: &mut Plane, colour
 pub fn solid(rows: Rows<'_>, depth: Option<&mut Plane>, colours: [u16; 2]) -> Option<u32> {
     by_kernel!((rows, depth, colours), {
         let [first, second] = colours;
-        // SAFETY: all rows lie within the slices, and columns are compared with the width.
+        // SAFETY: all rows lie within both slices, whose addresses are exposed, and columns are compared with the width.
         match (rows.job(depth.is_some(), u32::from(first) | u32::from(second) << 16), depth) {
             (Some(job), Some(depth)) => unsafe { processor::solid(rows.sides, depth, &job) },
             (Some(job), None) => unsafe { processor::solid_alone(rows.sides, &job) },
@@ -226,16 +230,17 @@ pub fn solid(rows: Rows<'_>, depth: Option<&mut Plane>, colours: [u16; 2]) -> Op
 }
 
 /// Fills `rows` by levels of red, green and blue with 22 fraction bits, with a depth test. Levels are clamped to 8 bits and rounded down to 5, 6 and 5
-/// bits. In the first row they are raised, and in the next one lowered, by `raise` steps of a channel of 8 bits: 8, 4 and 8 times this in the format of
-/// the levels. Returns what [`ramp`] does.
+/// bits. In the first row 8, 4 and 8 times `raise` is added to them; in the next row it is subtracted. `FORMAT` is a [`Format`] as a number. Returns what
+/// [`ramp`] does.
 #[inline(always)]
 #[must_use]
 pub fn channels<const FORMAT: u8>(rows: Rows<'_>, depth: &mut Plane, levels: &mut [Plane; 3], raise: i32) -> Option<u32> {
+    const { assert!(FORMAT <= Format::Swapped as u8) };
     by_kernel!((rows, depth, levels, raise), {
         let Some(lines) = rows.lines(true) else { return Some(0) };
         let (width, raise) = (rows.width, raise.wrapping_neg());
         let job = Channels { pitch: 2 * width, width, raise, count: rows.height << COUNTED, lines };
-        // SAFETY: all rows lie within the slices, and columns are compared with the width.
+        // SAFETY: all rows lie within both slices, whose addresses are exposed, and columns are compared with the width.
         unsafe { processor::channels::<FORMAT>(rows.sides, depth, levels, &job) }
     })
 }

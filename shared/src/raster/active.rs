@@ -19,7 +19,7 @@ pub struct ActiveTriangle {
     pub(crate) edges: EdgeState,
     /// Not 0 if the depth has been saved.
     has_depth: u16,
-    /// What `auto` has chosen for the triangle; 0 for other methods.
+    /// What `auto` has chosen for the triangle. It has a meaning only if `auto` has drawn it.
     pub(crate) choice: u16,
     /// The plane of depth, on the first row of the next band.
     depth: [u32; 3],
@@ -68,7 +68,7 @@ pub struct ActiveTriangles<'a> {
     queue: QueueState,
     /// Number of triangles that found the queue full.
     overflow: u32,
-    /// What `auto` has chosen for the triangle that is drawn, [`ActiveTriangle::choice`].
+    /// What `auto` has chosen for the triangle that is drawn, for [`ActiveTriangle::choice`]. Other methods leave it as it is.
     pub(crate) choice: u16,
 }
 

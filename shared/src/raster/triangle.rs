@@ -3,7 +3,7 @@
 use crate::{
     arch::product::HALVES,
     features::{TRANSPARENCY, TRANSPARENT},
-    format::{DEPTH, DEPTH_NODE, DEPTH_WALK},
+    format::{DEPTH, DEPTH_NODE, DEPTH_WALK, SUBPIXEL},
     geometry::projection::ScreenVertex,
     interpolate::{Constant, Patch, Walker, plane::Plane},
     pixel::Pixel,
@@ -16,7 +16,7 @@ use crate::{
         span::{DepthTest, fill},
     },
     setup::{
-        edge::{COLUMN, COLUMNS},
+        edge::{COLUMN, COLUMNS, MAX_STEPPED_HEIGHT},
         edge_walker::{EdgeState, EdgeWalker, LeftRight},
         gradients::Gradients,
     },
@@ -79,6 +79,12 @@ pub(crate) struct Rows<'b, D, P: Patch, T: PixelShader<<P::Walker as Walker>::Va
     /// Room for a run of a transparent surface.
     pub(crate) sheet: IfTransparent<Option<&'b mut Sheet<T::Pixel>>>,
 }
+
+const _: () = {
+    // Sides of pictures are shorter.
+    assert!(COLUMNS as usize == kernels::MAX_WIDTH + 1 && COLUMNS == kernels::MAX_FIRST + 1);
+    assert!(MAX_STEPPED_HEIGHT >> SUBPIXEL < kernels::MAX_HEIGHT as i32);
+};
 
 /// All bits of the number of pixels in a row.
 const ROW: u32 = 2 * COLUMNS - 1;
@@ -218,7 +224,7 @@ impl ScreenTriangle {
         shader: T,
         band: &mut Band<'_, T::Pixel>,
     ) -> u32 {
-        let has_kernel = const { kernels::AVAILABLE && T::HAS_KERNEL && P::IS_LINEAR && (T::CHEAP || D::WORDS > 0) };
+        let has_kernel = const { kernels::AVAILABLE && T::HAS_KERNEL && P::IS_LINEAR && D::IS_LINEAR && (T::CHEAP || D::WORDS > 0) };
         // Runs of transparent surfaces do not lie in the band, where kernels look for them.
         let is_glass = TRANSPARENCY && band.sheet.iter().any(|sheet| sheet.glass.is_some());
         if has_kernel && !is_glass {
@@ -386,6 +392,9 @@ pub fn turn<A: Copy>([a, b, c]: [A; 3], by: usize) -> [A; 3] {
 }
 
 /// Fills the rows from `row` to `stop`, and those below the turn, by a kernel.
+///
+/// They are within its limits. An edge that is stepped from end to end has at most [`MAX_STEPPED_HEIGHT`]. Of others a part has at most as many rows as
+/// its longer edge, and as [`crate::setup::edge::Edge::exact_rows`]: of a height of h rows min(h, 8192 / h), at most 90.
 #[inline(always)]
 fn fill_part<D: Patch, P: Patch, T: PixelShader<<P::Walker as Walker>::Value>>(
     [row, stop]: [i32; 2],

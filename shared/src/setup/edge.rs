@@ -89,7 +89,7 @@ impl Edge {
         }
     }
 
-    /// The column at the centre of the edge's first row, ready to be stepped to its end. Domain: edges of at most [`MAX_STEPPED_HEIGHT`] and
+    /// The column at the centre of the edge's first row, ready to be stepped to its end. A horizontal edge has no row, and a step without meaning. Domain: edges of at most [`MAX_STEPPED_HEIGHT`] and
     /// [`MAX_STEPPED_WIDTH`], whose columns lie in [0, [`COLUMNS`]).
     ///
     /// A true position is a multiple of 1/(256 h) columns, h the height in rows. The start is too small by less than
