@@ -76,6 +76,40 @@ macro_rules! restore {
     };
 }
 
+/// Reads sides, one field and the job, and puts them on the stack and into registers. The field is at `r1` and the job at `r2`.
+macro_rules! begin_one_field {
+    () => {
+        concat!(
+            save!("r0, r1"),
+            "\n mov r3, r2\n",
+            job!(),
+            "\n mov r9, r6\n ldm r3, {{r3-r7}}\n push {{r3-r7}}\n",
+            "ldm r1!, {{r3-r5}}\n rsbs r4, r4, #0\n mov r8, r4\n",
+            "ldr r1, [r0, #4]\n ldr r2, [r0, #12]\n push {{r1, r2, r5}}\n",
+            "ldr r1, [r0]\n ldr r2, [r0, #8]\n push {{r1-r3}}\n b 5f",
+        )
+    };
+}
+
+/// Loads the columns of left and right, a field, and their steps to the next row, and stores all of it stepped. The field at the right column is then in
+/// `r3`, the place to the left of the first pixel in `r1`, and the number of pixels in `r5`.
+macro_rules! enter_one_field {
+    () => {
+        concat!(
+            "mov r0, sp\n ldm r0!, {{r1-r6}}\n adds r4, r1\n adds r5, r2\n adds r6, r3\n mov r0, sp\n stm r0!, {{r4-r6}}\n",
+            columns!("r5"),
+            "\n mov r6, r8\n muls r6, r2, r6\n subs r3, r3, r6\n lsls r1, r1, #1\n add r1, r12",
+        )
+    };
+}
+
+/// Goes on with the next row, or stores sides and field, and returns.
+macro_rules! end_one_field {
+    () => {
+        concat!(next_row!(28, 12), "\n pop {{r4-r6}}\n", stored!(32), "\n ldr r1, [sp, #20]\n str r6, [r1]\n", restore!(8))
+    };
+}
+
 /// Fills rows by a table of 1024 colours, whose index is the upper 10 bits of a level.
 #[unsafe(naked)]
 pub(crate) unsafe extern "C" fn ramp(sides: &mut Sides, depth: &mut Plane, level: &mut Plane, job: &Job<*const u16>) -> u32 {
@@ -159,36 +193,9 @@ pub(crate) unsafe extern "C" fn ramp(sides: &mut Sides, depth: &mut Plane, level
 #[unsafe(naked)]
 pub(crate) unsafe extern "C" fn ramp_alone(sides: &mut Sides, level: &mut Plane, job: &Job<*const u16>) -> u32 {
     naked_asm!(
-        save!("r0, r1"),
-        "mov r3, r2",
-        job!(),
-        "mov r9, r6",
-        "ldm r3, {{r3-r7}}",
-        "push {{r4-r7}}",
-        "ldm r1!, {{r3-r5}}",
-        "rsbs r4, r4, #0",
-        "mov r8, r4",
-        "ldr r1, [r0, #4]",
-        "ldr r2, [r0, #12]",
-        "push {{r1, r2, r5}}",
-        "ldr r1, [r0]",
-        "ldr r2, [r0, #8]",
-        "push {{r1-r3}}",
-        "b 5f",
-        // Columns of left and right, level; their steps to the next row.
-        "1: mov r0, sp",
-        "ldm r0!, {{r1-r6}}",
-        "adds r4, r1",
-        "adds r5, r2",
-        "adds r6, r3",
-        "mov r0, sp",
-        "stm r0!, {{r4-r6}}",
-        columns!("r5"),
-        "mov r6, r8",
-        "muls r6, r2, r6",
-        "subs r3, r3, r6",
-        "lsls r1, r1, #1",
-        "add r1, r12",
+        begin_one_field!(),
+        "1:",
+        enter_one_field!(),
         "mov r0, r9",
         "lsls r5, r5, #1",
         "2: add r3, r8",
@@ -200,12 +207,7 @@ pub(crate) unsafe extern "C" fn ramp_alone(sides: &mut Sides, level: &mut Plane,
         "bne 2b",
         "4: add r12, r11",
         "add r12, r11",
-        next_row!(24, 12),
-        "pop {{r4-r6}}",
-        stored!(28),
-        "ldr r1, [sp, #20]",
-        "str r6, [r1]",
-        restore!(8),
+        end_one_field!(),
     )
 }
 
@@ -213,36 +215,9 @@ pub(crate) unsafe extern "C" fn ramp_alone(sides: &mut Sides, level: &mut Plane,
 #[unsafe(naked)]
 pub(crate) unsafe extern "C" fn solid(sides: &mut Sides, depth: &mut Plane, job: &Job<u32>) -> u32 {
     naked_asm!(
-        save!("r0, r1"),
-        "mov r3, r2",
-        job!(),
-        "mov r9, r6",
-        "ldm r3, {{r3-r7}}",
-        "push {{r3-r7}}",
-        "ldm r1!, {{r3-r5}}",
-        "rsbs r4, r4, #0",
-        "mov r8, r4",
-        "ldr r1, [r0, #4]",
-        "ldr r2, [r0, #12]",
-        "push {{r1, r2, r5}}",
-        "ldr r1, [r0]",
-        "ldr r2, [r0, #8]",
-        "push {{r1-r3}}",
-        "b 5f",
-        // Columns of left and right, depth; their steps to the next row.
-        "1: mov r0, sp",
-        "ldm r0!, {{r1-r6}}",
-        "adds r4, r1",
-        "adds r5, r2",
-        "adds r6, r3",
-        "mov r0, sp",
-        "stm r0!, {{r4-r6}}",
-        columns!("r5"),
-        "mov r6, r8",
-        "muls r6, r2, r6",
-        "subs r3, r3, r6",
-        "lsls r1, r1, #1",
-        "add r1, r12",
+        begin_one_field!(),
+        "1:",
+        enter_one_field!(),
         "ldr r2, [sp, #24]",
         "adds r2, r1",
         "mov r0, r9",
@@ -262,12 +237,7 @@ pub(crate) unsafe extern "C" fn solid(sides: &mut Sides, depth: &mut Plane, job:
         "movs r1, #16",
         "rors r0, r1",
         "mov r9, r0",
-        next_row!(28, 12),
-        "pop {{r4-r6}}",
-        stored!(32),
-        "ldr r1, [sp, #20]",
-        "str r6, [r1]",
-        restore!(8),
+        end_one_field!(),
     )
 }
 

@@ -30,6 +30,28 @@ macro_rules! columns {
     };
 }
 
+/// Loads the columns of left and right, a field, and their steps to the next row, and stores all of it stepped. The field at the right column is then in
+/// `r4`, its step to the next column in `r8`, the place to the left of the first pixel in `r2`, and the number of pixels in `r6`.
+macro_rules! enter_one_field {
+    () => {
+        concat!(
+            "ldm sp, {{r2-r8}}\n add r5, r2\n add r6, r3\n add r7, r4\n stm sp, {{r5-r7}}\n",
+            columns!(),
+            "\n mla r4, r8, r3, r4\n add r2, lr, r2, lsl #1",
+        )
+    };
+}
+
+/// Goes on with the next row, or stores sides and field, and returns.
+macro_rules! end_one_field {
+    () => {
+        concat!(
+            next_row!(28, 12),
+            "\n pop {{r4, r6, r8}}\n ldrd r5, r7, [sp]\n add sp, #32\n pop {{r1, r2}}\n stm r1, {{r4-r7}}\n str r8, [r2]\n pop {{r4-r11, pc}}",
+        )
+    };
+}
+
 /// Fills rows by a table of 1024 colours, whose index is the upper 10 bits of a level.
 #[unsafe(naked)]
 pub(crate) unsafe extern "C" fn ramp(sides: &mut Sides, depth: &mut Plane, level: &mut Plane, job: &Job<*const u16>) -> u32 {
@@ -100,15 +122,8 @@ pub(crate) unsafe extern "C" fn ramp_alone(sides: &mut Sides, level: &mut Plane,
         "push {{r4, r6, r8}}",
         "ldm r2, {{r0, r1, r12, lr}}",
         "b 5f",
-        // Columns of left and right, level; their steps to the next row; the step of the level to the next column.
-        "1: ldm sp, {{r2-r8}}",
-        "add r5, r2",
-        "add r6, r3",
-        "add r7, r4",
-        "stm sp, {{r5-r7}}",
-        columns!(),
-        "mla r4, r8, r3, r4",
-        "add r2, lr, r2, lsl #1",
+        "1:",
+        enter_one_field!(),
         "2: sub r4, r8",
         "lsrs r7, r4, #22",
         "ldrh r7, [r12, r7, lsl #1]",
@@ -116,14 +131,7 @@ pub(crate) unsafe extern "C" fn ramp_alone(sides: &mut Sides, level: &mut Plane,
         "subs r6, #1",
         "bne 2b",
         "4: add lr, r1",
-        next_row!(28, 12),
-        "pop {{r4, r6, r8}}",
-        "ldrd r5, r7, [sp]",
-        "add sp, #32",
-        "pop {{r1, r2}}",
-        "stm r1, {{r4-r7}}",
-        "str r8, [r2]",
-        "pop {{r4-r11, pc}}",
+        end_one_field!(),
         one = const 1 << COUNTED,
     )
 }
@@ -144,15 +152,8 @@ pub(crate) unsafe extern "C" fn solid(sides: &mut Sides, depth: &mut Plane, job:
         "push {{r4, r6, r8}}",
         "ldm r2, {{r0, r1, r12, lr}}",
         "b 5f",
-        // Columns of left and right, depth; their steps to the next row; the step of depth to the next column.
-        "1: ldm sp, {{r2-r8}}",
-        "add r5, r2",
-        "add r6, r3",
-        "add r7, r4",
-        "stm sp, {{r5-r7}}",
-        columns!(),
-        "mla r4, r8, r3, r4",
-        "add r2, lr, r2, lsl #1",
+        "1:",
+        enter_one_field!(),
         "add r3, r2, r11",
         "2: sub r4, r8",
         "ldrh r7, [r3, r6, lsl #1]",
@@ -165,14 +166,7 @@ pub(crate) unsafe extern "C" fn solid(sides: &mut Sides, depth: &mut Plane, job:
         "bne 2b",
         "4: add lr, r1",
         "ror r12, r12, #16",
-        next_row!(28, 12),
-        "pop {{r4, r6, r8}}",
-        "ldrd r5, r7, [sp]",
-        "add sp, #32",
-        "pop {{r1, r2}}",
-        "stm r1, {{r4-r7}}",
-        "str r8, [r2]",
-        "pop {{r4-r11, pc}}",
+        end_one_field!(),
         one = const 1 << COUNTED,
     )
 }
