@@ -23,7 +23,7 @@ use microphong::{
         band::Band,
         canvas::{BandCanvas, Canvas, Colourist, Shaded},
         pixel_shader::Solid,
-        triangle::ScreenTriangle,
+        triangle::{ScreenTriangle, turned},
     },
     setup::gradients::Gradients,
 };
@@ -38,7 +38,7 @@ const HEIGHT: usize = 80;
 
 /// Data that all parts of a triangle share.
 struct Whole<'a> {
-    screen: &'a ScreenTriangle,
+    screen: &'a ScreenTriangle<'a>,
     gradients: &'a Gradients,
     depth: Plane<1>,
 }
@@ -80,9 +80,10 @@ fn parts_of_random_triangles_cover_each_pixel_once() {
         };
         let [a, b, c] = corners.map(|[x, y]| ScreenVertex { x, y, depth: 1 << 27, light: [0; 4], state: State::READY });
         let corners = if Extent::new(corners).area < 0 { [&a, &c, &b] } else { [&a, &b, &c] };
+        let (_, corners) = turned(corners);
         let nowhere = ScreenTriangle::new(corners, [0, WIDTH as i32], [0; 2]);
-        let visible = Bounds::new(&Extent::new(nowhere.corners)).clipped(Bounds::whole(w / 16, h / 16)).sides();
-        let Some(gradients) = Gradients::new(nowhere.corners, visible) else { continue };
+        let visible = Bounds::new(&Extent::new(nowhere.corners())).clipped(Bounds::whole(w / 16, h / 16)).sides();
+        let Some(gradients) = Gradients::new(nowhere.corners(), visible) else { continue };
         let whole = Whole { screen: &nowhere, gradients: &gradients, depth: nowhere.plane(&gradients, 0) };
         let mut pictures = [[Gray8::BLACK; WIDTH * HEIGHT]; 2];
         let mut drawn = [0; 2];

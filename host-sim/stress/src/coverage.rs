@@ -12,7 +12,7 @@ use microphong::{
         viewport::Bounds,
     },
     interpolate::Constant,
-    raster::{active::ActiveTriangles, band::Band, counts::Counts, pixel_shader::Solid, triangle::ScreenTriangle},
+    raster::{active::ActiveTriangles, band::Band, counts::Counts, pixel_shader::Solid, triangle::{ScreenTriangle, turned}},
     setup::gradients::Gradients,
 };
 
@@ -112,6 +112,7 @@ pub fn draw(corners: Corners, band_rows: usize, counts: &mut [u8]) -> u32 {
     let vertices = corners.map(vertex);
     let corners = [&vertices[0], &vertices[1], &vertices[2]];
     let mut drawn = 0;
+    let (_, corners) = turned(corners);
     for top in (0..HEIGHT).step_by(band_rows) {
         let rows = band_rows.min(HEIGHT - top);
         let mut pixels = vec![Gray8::BLACK; rows * WIDTH];
@@ -127,8 +128,8 @@ pub fn draw(corners: Corners, band_rows: usize, counts: &mut [u8]) -> u32 {
             sheet: Default::default(),
         };
         let screen = ScreenTriangle::new(corners, [0, WIDTH as i32], [top, top + rows].map(|row| row as i32));
-        let visible = Bounds::new(&Extent::new(screen.corners)).clipped(Bounds::whole(WIDTH as i32, HEIGHT as i32)).sides();
-        let Some(gradients) = Gradients::new(screen.corners, visible) else { return 0 };
+        let visible = Bounds::new(&Extent::new(screen.corners())).clipped(Bounds::whole(WIDTH as i32, HEIGHT as i32)).sides();
+        let Some(gradients) = Gradients::new(screen.corners(), visible) else { return 0 };
         drawn += screen.draw(&gradients, Constant, Solid::<Gray8>::new([1; 2]), &mut band);
         for (count, pixel) in counts[top * WIDTH..].iter_mut().zip(&pixels) {
             *count += pixel.luma();

@@ -65,7 +65,7 @@ impl SubTriangle {
 
 /// A triangle that is drawn in parts, with what is needed to fit fields to them.
 pub struct Parts<'f> {
-    screen: &'f ScreenTriangle,
+    screen: &'f ScreenTriangle<'f>,
     gradients: Gradients,
     depth: Plane<1>,
     texture: IfTextured<Option<Placed<'f, PlacePatch>>>,
@@ -161,7 +161,7 @@ impl ScreenSubTriangle {
     /// Where `sub_triangle` lies.
     #[inline(never)]
     #[must_use]
-    pub fn new(screen: &ScreenTriangle, sub_triangle: &SubTriangle) -> Self {
+    pub fn new(screen: &ScreenTriangle<'_>, sub_triangle: &SubTriangle) -> Self {
         let finer = SPLITS.saturating_sub(sub_triangle.level);
         let (sign, [u, v, w]) = (sub_triangle.sign(), sub_triangle.origin);
         // One coordinate of the corners, which lie around the point of the barycentric coordinates `origin`.
@@ -170,7 +170,7 @@ impl ScreenSubTriangle {
             let place = |corner: i32| around.wrapping_add(corner.wrapping_mul(sign)) << finer;
             [place(a), place(b), place(c)]
         };
-        let [[ax, ay], [bx, by], [cx, cy]] = screen.corners;
+        let [[ax, ay], [bx, by], [cx, cy]] = screen.corners();
         let (columns, rows) = (along([ax, bx, cx]), along([ay, by, cy]));
         Self { sub_triangle: *sub_triangle, corners: zip(columns, rows, |x, y| [x, y]), rows: range(rows), columns: range(columns) }
     }

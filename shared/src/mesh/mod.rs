@@ -136,14 +136,14 @@ impl<C: Pixel> Drawing<'_, C> {
         let (screen, gradients, needs_depth_test);
         // Decision: continued.
         if let Some(active_triangle) = place.and_then(|place| band.active.active_triangle(place)) {
-            (screen, gradients) = (ScreenTriangle::resumed(active_triangle, by, band), Gradients::NONE);
+            (screen, gradients) = (ScreenTriangle::resumed(active_triangle, corners, band), Gradients::NONE);
             needs_depth_test = active_triangle.inv_depth().is_some();
         } else {
-            let mut new = ScreenTriangle::word_sized((by, corners), key, band);
+            let mut new = ScreenTriangle::word_sized(corners, key, band);
             if new.is_empty() {
                 return Some(0);
             }
-            gradients = Gradients::word_sized(new.corners, self.pass.steepness);
+            gradients = Gradients::word_sized(new.corners(), self.pass.steepness);
             needs_depth_test = self.pass.needs_depth_test(&new);
             if needs_depth_test {
                 new.set_up_depth(&gradients);

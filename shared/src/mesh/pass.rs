@@ -15,7 +15,7 @@ use crate::{
         vertices::VertexStage,
     },
     method::{Method, Middles, Shading, TriangleSetup},
-    raster::triangle::{ScreenTriangle, turn},
+    raster::triangle::{ScreenTriangle, turned},
     setup::{
         edge::MAX_STEPPED_WIDTH,
         gradients::{Gradients, MAX_FINE_THINNESS},
@@ -90,8 +90,8 @@ impl MeshPass<'_> {
 
     /// Whether other triangles may overlap this one.
     #[inline(always)]
-    pub(super) fn needs_depth_test(&self, screen: &ScreenTriangle) -> bool {
-        let [[x0, top], [x1, y1], [x2, y2]] = screen.corners;
+    pub(super) fn needs_depth_test(&self, screen: &ScreenTriangle<'_>) -> bool {
+        let [[x0, top], [x1, y1], [x2, y2]] = screen.corners();
         // Decision: depth.
         self.depth_elision.is_none_or(|elision| elision.needs_depth_test([x0.min(x1).min(x2), x0.max(x1).max(x2)], [top, y1.max(y2)]))
     }
@@ -150,25 +150,26 @@ impl MeshPass<'_> {
     fn set_up_placed(&self, placed: &MeshTriangle<'_>, target: &mut Target<'_>) -> u32 {
         let [a, b, c] = placed.corners.map(|corner| corner.x);
         let is_wide = a.max(b).max(c).wrapping_sub(a.min(b).min(c)) >= WIDE;
-        let screen = ScreenTriangle::new(placed.corners, if is_wide { self.columns } else { [0, target.width] }, target.rows);
+        let (by, corners) = turned(placed.corners);
+        let screen = ScreenTriangle::new(corners, if is_wide { self.columns } else { [0, target.width] }, target.rows);
         if screen.is_empty() {
             return 0;
         }
-        let Some(gradients) = Gradients::new(screen.corners, self.viewport.box_of(placed.corners)) else { return 0 };
+        let Some(gradients) = Gradients::new(screen.corners(), self.viewport.box_of(placed.corners)) else { return 0 };
         let gradients = gradients.steep(self.steepness);
         // Most of the slivers of a fine mesh lie between the centres of pixels.
         if gradients.is_thinner_than(MAX_FINE_THINNESS) && screen.covers_nothing() {
             return 0;
         }
-        let paint = placed.paint.turned(screen.turned);
+        let paint = placed.paint.turned(by);
         let setup = TriangleSetup {
             screen: &screen,
             gradients: &gradients,
-            corners: turn(placed.corners, screen.turned),
+            corners,
             albedos: paint.lent(),
             nodes_of_colours: [Middles::IN_SPACE; COLOURED],
             texture: self.painting.texture(&paint),
-            turned: screen.turned,
+            turned: by,
             triangle: placed.triangle,
             vertices: placed.vertices,
             needs_depth_test: self.needs_depth_test(&screen),

@@ -240,7 +240,7 @@ pub(crate) fn largest(&[a, b, c]: &[i32; 3]) -> i32 {
 pub struct TriangleSetup<'f> {
     /// Corners, edges and depth on the screen.
     #[doc(hidden)]
-    pub screen: &'f ScreenTriangle,
+    pub screen: &'f ScreenTriangle<'f>,
     /// The gradients by which polynomials are fitted to the triangle.
     #[doc(hidden)]
     pub gradients: &'f Gradients,

@@ -88,7 +88,7 @@ pub fn shade_steeply(
 #[cold]
 #[inline(never)]
 fn in_tiles(setup: &TriangleSetup<'_>, canvas: &mut dyn Canvas, shade: &mut dyn FnMut(&TriangleSetup<'_>, &mut dyn Canvas) -> u32) -> u32 {
-    let (corners, whole) = (setup.screen.corners, setup.gradients);
+    let (corners, whole) = (setup.screen.corners(), setup.gradients);
     let side = whole.steepness().tile();
     let [a, b, c] = corners.map(|corner| corner.map(|c| c >> SUBPIXEL));
     let [columns, top, bottom] = canvas.bounds();

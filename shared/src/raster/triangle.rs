@@ -25,14 +25,10 @@ use core::hint::black_box;
 use microphong_kernels as kernels;
 use zerocopy::transmute_mut;
 
-/// A triangle on the screen, its top corner first, clockwise on a screen whose y runs down.
+/// A triangle on the screen.
 #[derive(Clone, Copy, Debug)]
-pub struct ScreenTriangle {
-    /// `[x, y]`, 1/16 pixel.
-    pub corners: [[i32; 2]; 3],
-    pub(crate) depth: [i32; 3],
-    /// Index of the top corner in the order of the mesh.
-    pub turned: usize,
+pub struct ScreenTriangle<'f> {
+    corners: [&'f ScreenVertex; 3],
     /// The rows of the triangle in a band.
     rows: RowRange,
 }
@@ -89,41 +85,43 @@ const _: () = {
 /// All bits of the number of pixels in a row.
 const ROW: u32 = 2 * COLUMNS - 1;
 
-impl ScreenTriangle {
+impl<'f> ScreenTriangle<'f> {
     /// No triangle.
-    pub(crate) const NONE: Self = Self { corners: [[0; 2]; 3], depth: [0; 3], turned: 0, rows: RowRange::of(EdgeWalker::NONE, 0) };
+    pub(crate) const NONE: Self = Self { corners: [&ScreenVertex::IDLE; 3], rows: RowRange::of(EdgeWalker::NONE, 0) };
 
-    /// Rotates the corners so that the top one is first. Pixels outside of these `columns` and `rows` are not drawn. If edges are stepped from end to
+    /// A triangle whose corners have been [`turned`]. Pixels outside of these `columns` and `rows` are not drawn. If edges are stepped from end to
     /// end, these have to be the band's.
     #[inline(never)]
     #[must_use]
-    pub fn new(corners: [&ScreenVertex; 3], columns: [i32; 2], rows: [i32; 2]) -> Self {
-        let (turned, corners) = turned(corners);
-        let places = places(corners);
-        let sides = EdgeWalker::new(places, rows, columns);
-        Self { corners: places, depth: depths(corners), turned, rows: RowRange::of(sides, 0) }
+    pub fn new(corners: [&'f ScreenVertex; 3], columns: [i32; 2], rows: [i32; 2]) -> Self {
+        Self { corners, rows: RowRange::of(EdgeWalker::new(places(corners), rows, columns), 0) }
     }
 
     /// A word-sized triangle that has been [`turned`]: its edges can be stepped from end to end.
     #[inline(always)]
     #[must_use]
-    pub(crate) fn word_sized<C>((turned, corners): (usize, [&ScreenVertex; 3]), key: u32, band: &Band<'_, C>) -> Self {
-        let places = places(corners);
-        let sides = EdgeWalker::end_to_end(places, band.range());
-        Self { corners: places, depth: depths(corners), turned, rows: RowRange::of(sides, key) }
+    pub(crate) fn word_sized<C>(corners: [&'f ScreenVertex; 3], key: u32, band: &Band<'_, C>) -> Self {
+        Self { corners, rows: RowRange::of(EdgeWalker::end_to_end(places(corners), band.range()), key) }
     }
 
-    /// A triangle that the band above has saved; corners and depth of corners are not known.
+    /// A triangle that the band above has saved.
     #[inline(always)]
     #[must_use]
-    pub(crate) fn resumed<C>(active_triangle: &ActiveTriangle, turned: usize, band: &Band<'_, C>) -> Self {
+    pub(crate) fn resumed<C>(active_triangle: &ActiveTriangle, corners: [&'f ScreenVertex; 3], band: &Band<'_, C>) -> Self {
         let rows = RowRange {
             sides: active_triangle.edges.walker(band.range()),
             inv_depth: active_triangle.inv_depth(),
             key: active_triangle.key,
             resumed: 1,
         };
-        Self { corners: [[0; 2]; 3], depth: [0; 3], turned, rows }
+        Self { corners, rows }
+    }
+
+    /// `[x, y]` of the corners in 1/16 pixel, the top one first, clockwise on a screen whose y runs down.
+    #[inline(always)]
+    #[must_use]
+    pub fn corners(&self) -> [[i32; 2]; 3] {
+        places(self.corners)
     }
 
     /// Whether no row lies in the band.
@@ -149,7 +147,7 @@ impl ScreenTriangle {
             if stop >= sides.end {
                 return true;
             }
-            stop = sides.next(row, &mut pair, self.corners);
+            stop = sides.next(row, &mut pair, self.corners());
         }
     }
 
@@ -210,7 +208,7 @@ impl ScreenTriangle {
             if stop >= sides.end {
                 return pixels;
             }
-            stop = sides.next(row, &mut pair, self.corners);
+            stop = sides.next(row, &mut pair, self.corners());
         }
     }
 
@@ -250,7 +248,7 @@ impl ScreenTriangle {
                 break;
             }
             row = stop;
-            stop = sides.next(row, &mut rows.sides, self.corners);
+            stop = sides.next(row, &mut rows.sides, self.corners());
         }
         let filled = rows.filled;
         if P::WORDS <= ActiveTriangle::WORDS && self.rows.key != 0 && sides.goes_on() {
@@ -335,7 +333,7 @@ impl ScreenTriangle {
                 shader.step_row();
             }
             row = stop;
-            stop = sides.next(row, pair, self.corners);
+            stop = sides.next(row, pair, self.corners());
         }
     }
 
@@ -353,8 +351,8 @@ impl ScreenTriangle {
 
     #[inline(always)]
     fn fit_depth(&self, gradients: &Gradients, row: i32) -> Plane<1> {
-        let [a, b, c] = self.depth;
-        let node = |depth: i32| (depth + (1 << (DEPTH - DEPTH_NODE - 1))) >> (DEPTH - DEPTH_NODE);
+        let [a, b, c] = self.corners;
+        let node = |corner: &ScreenVertex| (corner.depth + (1 << (DEPTH - DEPTH_NODE - 1))) >> (DEPTH - DEPTH_NODE);
         let mut depth = Plane::fit::<DEPTH_NODE>(gradients, &[[node(a), node(b), node(c)]], 16 + DEPTH_WALK - DEPTH_NODE, [0]);
         depth.jump(row.wrapping_sub(gradients.row()));
         depth
@@ -364,20 +362,15 @@ impl ScreenTriangle {
 /// Index of the top corner, and the corners from there on.
 #[inline(always)]
 #[must_use]
-pub(crate) fn turned(corners: [&ScreenVertex; 3]) -> (usize, [&ScreenVertex; 3]) {
+pub fn turned(corners: [&ScreenVertex; 3]) -> (usize, [&ScreenVertex; 3]) {
     let [a, b, c] = corners;
     let by = if b.y < a.y || c.y < a.y { if c.y < b.y { 2 } else { 1 } } else { 0 };
     (by, turn(corners, by))
 }
 
-#[inline]
+#[inline(always)]
 fn places([a, b, c]: [&ScreenVertex; 3]) -> [[i32; 2]; 3] {
     [[a.x, a.y], [b.x, b.y], [c.x, c.y]]
-}
-
-#[inline]
-fn depths([a, b, c]: [&ScreenVertex; 3]) -> [i32; 3] {
-    [a.depth, b.depth, c.depth]
 }
 
 /// Rotates three values by `by` places.
