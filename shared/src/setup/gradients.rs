@@ -48,14 +48,10 @@ pub struct Gradients {
     precision: Precision,
     /// Vector from corner 0 to the centre of its pixel, [`FINE`] fraction bits.
     pub offset: [i32; 2],
-    /// Vector from that pixel to the anchor, in pixels.
-    pub shift: [i32; 2],
     /// The anchor.
     anchor: [i32; 2],
-    /// Vectors from corner 0 to the corners 1 and 2, in 1/16 pixel, of a part of the triangle 2^`level` times finer.
+    /// Vectors from corner 0 to the corners 1 and 2, in 1/16 pixel, of a part of the triangle 2^[`Self::level`] times finer.
     pub edges: [[i32; 2]; 2],
-    /// How often the triangle was split.
-    pub level: u32,
     /// How steeply light depends on the fitted field.
     steepness: Steepness,
 }
@@ -66,8 +62,18 @@ enum Precision {
     /// The reciprocal area of a word-sized triangle, see [`Gradients::if_word_sized`].
     WordSized(WordSized),
     /// Gradients of a part of a word-sized triangle.
-    Part(Slopes),
-    Any(Slopes),
+    Part(Exact),
+    Any(Exact),
+}
+
+/// The gradients of a triangle that is not word-sized, and its place.
+#[derive(Clone, Copy, Debug)]
+struct Exact {
+    slopes: Slopes,
+    /// Vector from the pixel at corner 0 to the anchor, in pixels.
+    shift: [i32; 2],
+    /// How often the triangle was split.
+    level: u32,
 }
 
 /// Gradients of s and t per pixel, `[along x, along y]`: mantissas, each to be divided by 2^`exponent`.
@@ -103,12 +109,10 @@ impl Gradients {
 
     /// Gradients of a triangle on which nothing is fitted.
     pub(crate) const NONE: Self = Self {
-        precision: Precision::Any(Slopes { s: [0; 2], t: [0; 2], exponent: 0 }),
+        precision: Precision::Any(Exact { slopes: Slopes { s: [0; 2], t: [0; 2], exponent: 0 }, shift: [0; 2], level: 0 }),
         offset: [0; 2],
-        shift: [0; 2],
         anchor: [0; 2],
         edges: [[0; 2]; 2],
-        level: 0,
         steepness: Steepness::NONE,
     };
 
@@ -125,7 +129,7 @@ impl Gradients {
         let ([x0, y0], edges) = edges(corners);
         let anchor = [x0 >> SUBPIXEL, (y0 + CENTRE - 1) >> SUBPIXEL];
         let offset = [((anchor[0] << SUBPIXEL) + CENTRE - x0) << SPLITS, ((anchor[1] << SUBPIXEL) + CENTRE - y0) << SPLITS];
-        Self { precision: Precision::WordSized(area), offset, shift: [0; 2], anchor, edges, level: 0, steepness }
+        Self { precision: Precision::WordSized(area), offset, anchor, edges, steepness }
     }
 
     /// The gradients of any triangle; `None` if it has no area or runs the other way.
@@ -151,19 +155,17 @@ impl Gradients {
         let shift = [middle[0].wrapping_sub(pixel[0]), middle[1].wrapping_sub(pixel[1])];
         let reach = size.min(1 << 20) as i32 >> (SUBPIXEL - 1);
         let shift = if reach <= NEAR { [0; 2] } else { shift };
-        let gradients = Slopes {
+        let slopes = Slopes {
             s: [mantissa(y2), mantissa(x2.wrapping_neg())],
             t: [mantissa(y1.wrapping_neg()), mantissa(x1)],
             // gradient per pixel = 16 c / det = mantissa 2^(drop + 4 + zeros - 94)
             exponent: 90 - zeros - drop,
         };
         Some(Self {
-            precision: Precision::Any(gradients),
+            precision: Precision::Any(Exact { slopes, shift, level: 0 }),
             offset: [(pixel[0] << SUBPIXEL) + CENTRE - x0, (pixel[1] << SUBPIXEL) + CENTRE - y0].map(|c| c << SPLITS),
-            shift,
             anchor: [pixel[0].wrapping_add(shift[0]), pixel[1].wrapping_add(shift[1])],
             edges,
-            level: 0,
             steepness: Steepness::NONE,
         })
     }
@@ -172,8 +174,10 @@ impl Gradients {
     #[must_use]
     pub fn anchored(corners: [[i32; 2]; 3], anchor: [i32; 2]) -> Option<Self> {
         let whole = Self::any(corners, [0; 4])?;
-        let away = |k: usize| anchor[k].wrapping_sub(whole.anchor[k]).wrapping_add(whole.shift[k]);
-        Some(Self { shift: [away(0), away(1)], anchor, ..whole })
+        let (from, shift) = (whole.anchor, whole.shift());
+        let away = |k: usize| anchor[k].wrapping_sub(from[k]).wrapping_add(shift[k]);
+        let exact = Exact { slopes: whole.slopes(), shift: [away(0), away(1)], level: 0 };
+        Some(Self { precision: Precision::Any(exact), anchor, ..whole })
     }
 
     /// These gradients, for fields of this steepness: they are fitted as exactly as the highlights of a material need them.
@@ -201,15 +205,14 @@ impl Gradients {
         let centre = |k: usize| (pixel[k] << FINE).wrapping_add(1 << (FINE - 1)).wrapping_sub(corner[k]);
         let anchor = if near { pixel } else { self.anchor };
         let Slopes { s, t, exponent } = self.slopes();
-        let gradients = Slopes { s: gradient(s), t: gradient(t), exponent: exponent - level as i32 };
-        let fits_words = near && gradients.exponent >= LEAST && !matches!(self.precision, Precision::Any(_));
+        let slopes = Slopes { s: gradient(s), t: gradient(t), exponent: exponent - level as i32 };
+        let shift = [anchor[0].wrapping_sub(pixel[0]), anchor[1].wrapping_sub(pixel[1])];
+        let (exact, fits_words) = (Exact { slopes, shift, level }, near && slopes.exponent >= LEAST && !self.is_any());
         Self {
-            precision: if fits_words { Precision::Part(gradients) } else { Precision::Any(gradients) },
+            precision: if fits_words { Precision::Part(exact) } else { Precision::Any(exact) },
             offset: [centre(0), centre(1)],
-            shift: [anchor[0].wrapping_sub(pixel[0]), anchor[1].wrapping_sub(pixel[1])],
             anchor,
             edges: self.edges.map(gradient),
-            level,
             steepness: self.steepness,
         }
     }
@@ -218,7 +221,10 @@ impl Gradients {
     #[must_use]
     pub fn parted(&self) -> Self {
         match self.precision {
-            Precision::WordSized(area) => Self { precision: Precision::Part(Self::mantissas(self.edges, area)), ..*self },
+            Precision::WordSized(area) => {
+                let exact = Exact { slopes: Self::mantissas(self.edges, area), shift: [0; 2], level: 0 };
+                Self { precision: Precision::Part(exact), ..*self }
+            }
             _ => *self,
         }
     }
@@ -257,8 +263,27 @@ impl Gradients {
     pub fn slopes(&self) -> Slopes {
         match self.precision {
             Precision::WordSized(area) => Self::mantissas(self.edges, area),
-            Precision::Part(gradients) => gradients,
-            Precision::Any(gradients) => gradients,
+            Precision::Part(exact) | Precision::Any(exact) => exact.slopes,
+        }
+    }
+
+    /// Vector from the pixel at corner 0 to the anchor, in pixels.
+    #[inline]
+    #[must_use]
+    pub fn shift(&self) -> [i32; 2] {
+        match self.precision {
+            Precision::WordSized(_) => [0; 2],
+            Precision::Part(exact) | Precision::Any(exact) => exact.shift,
+        }
+    }
+
+    /// How often the triangle was split.
+    #[inline]
+    #[must_use]
+    pub fn level(&self) -> u32 {
+        match self.precision {
+            Precision::WordSized(_) => 0,
+            Precision::Part(exact) | Precision::Any(exact) => exact.level,
         }
     }
 
@@ -330,7 +355,7 @@ impl Gradients {
     #[must_use]
     pub fn fine(&self, nodes: [i32; 3]) -> [i64; 3] {
         let [c, dx, dy] = self.plane(nodes, 0);
-        let [x, y] = self.shift.map(i64::from);
+        let [x, y] = self.shift().map(i64::from);
         [c.wrapping_add(dx.wrapping_mul(x)).wrapping_add(dy.wrapping_mul(y)), dx, dy]
     }
 
@@ -472,7 +497,8 @@ impl Gradients {
     /// The triangle for fits by exact fractions; `None` if it is so large that its area does not fit a word.
     fn sliver(&self) -> Option<Sliver> {
         // In 1/16 pixel, in a part of the triangle as much finer as it is smaller: all exact.
-        Sliver::new(self.edges, self.offset.map(|c| c >> (SPLITS - self.level)), SUBPIXEL + self.level)
+        let level = self.level();
+        Sliver::new(self.edges, self.offset.map(|c| c >> (SPLITS - level)), SUBPIXEL + level)
     }
 
     /// Whether quadratics can be walked in words all over the triangle.
@@ -481,7 +507,7 @@ impl Gradients {
     pub(crate) fn walks_in_words(&self) -> bool {
         match self.precision {
             Precision::WordSized(area) if self.steepness.walks_word_sized(area.bits) => true,
-            _ => walks_in_words(self.edges, self.shift, self.steepness),
+            _ => walks_in_words(self.edges, self.shift(), self.steepness),
         }
     }
 
@@ -496,10 +522,11 @@ impl Gradients {
     /// Moves coefficients from corner 0's pixel to the anchor, exactly.
     #[inline]
     fn moved(&self, [c, dx, dy, dxx, dxy, dyy]: [i64; 6]) -> [i64; 6] {
-        if self.shift == [0; 2] {
+        let shift = self.shift();
+        if shift == [0; 2] {
             return [c, dx, dy, dxx, dxy, dyy];
         }
-        let [x, y] = self.shift.map(i64::from);
+        let [x, y] = shift.map(i64::from);
         let m = i64::wrapping_mul;
         let bend_x = m(dxx, x).wrapping_add(m(dxy, y));
         let bend_y = m(dyy, y);

@@ -13,7 +13,7 @@ use microphong::{
 #[must_use]
 pub fn fit(gradients: &Gradients, nodes: [i32; 10], extra: u32) -> Terms<i64> {
     let (nodes, fraction) = (nodes.map(Wide::from), extra + GUARD as u32);
-    let [x, y] = gradients.shift.map(Wide::from);
+    let [x, y] = gradients.shift().map(Wide::from);
     let thin = if gradients.is_thinner_than(MAX_THINNESS) { Sliver::new(gradients) } else { None };
     let terms = if let Some(sliver) = thin {
         sliver.fit(nodes, fraction).moved_across(|a, b| a + b * x).moved_down(|a, b| a + b * y)
@@ -46,8 +46,9 @@ impl Sliver {
     fn new(gradients: &Gradients) -> Option<Self> {
         let edges @ [[x1, y1], [x2, y2]] = gradients.edges.map(|edge| edge.map(Wide::from));
         let area = x1 * y2 - x2 * y1;
-        let offset = gradients.offset.map(|c| Wide::from(c >> (SPLITS - gradients.level)));
-        (1..=u32::MAX.into()).contains(&area.0).then_some(Self { bits: SUBPIXEL + gradients.level, edges, offset, area })
+        let level = gradients.level();
+        let offset = gradients.offset.map(|c| Wide::from(c >> (SPLITS - level)));
+        (1..=u32::MAX.into()).contains(&area.0).then_some(Self { bits: SUBPIXEL + level, edges, offset, area })
     }
 
     /// The terms at the centre of the pixel, with `extra` more bits than the nodes.
