@@ -147,7 +147,7 @@ impl<'f> ScreenTriangle<'f> {
             if stop >= sides.end {
                 return true;
             }
-            stop = sides.next(row, &mut pair, self.corners());
+            stop = self.next(row, &mut pair);
         }
     }
 
@@ -208,8 +208,20 @@ impl<'f> ScreenTriangle<'f> {
             if stop >= sides.end {
                 return pixels;
             }
-            stop = sides.next(row, &mut pair, self.corners());
+            stop = self.next(row, &mut pair);
         }
+    }
+
+    /// Continues with the rows from `row`, to which `pair` has been stepped; returns one past the last row to which it can be stepped now.
+    #[inline(always)]
+    fn next(&self, row: i32, pair: &mut LeftRight) -> i32 {
+        self.rows.sides.next(pair).unwrap_or_else(|| self.anew(row, pair))
+    }
+
+    #[cold]
+    #[inline(never)]
+    fn anew(&self, row: i32, pair: &mut LeftRight) -> i32 {
+        self.rows.sides.anew(row, pair, self.corners())
     }
 
     /// Draws row by row down the edges; `depth` stands on the first row.
@@ -248,7 +260,7 @@ impl<'f> ScreenTriangle<'f> {
                 break;
             }
             row = stop;
-            stop = sides.next(row, &mut rows.sides, self.corners());
+            stop = self.next(row, &mut rows.sides);
         }
         let filled = rows.filled;
         if P::WORDS <= ActiveTriangle::WORDS && self.rows.key != 0 && sides.goes_on() {
@@ -333,7 +345,7 @@ impl<'f> ScreenTriangle<'f> {
                 shader.step_row();
             }
             row = stop;
-            stop = sides.next(row, pair, self.corners());
+            stop = self.next(row, pair);
         }
     }
 

@@ -172,17 +172,20 @@ impl EdgeWalker {
         Some(Turn { height: self.end.wrapping_sub(self.stop) as u32, is_right: right, line: [x, step] })
     }
 
-    /// Continues with the rows from `row`, to which `pair` has been stepped; returns one past the last row to which it can be stepped now.
+    /// Continues below the middle corner, to which `pair` has been stepped; returns one past the last row to which it can be stepped now. `None` if edges
+    /// are computed again there, by [`Self::anew`].
     #[inline(always)]
-    pub(crate) fn next(&self, row: i32, pair: &mut LeftRight, corners: [[i32; 2]; 3]) -> i32 {
+    pub(crate) fn next(&self, pair: &mut LeftRight) -> Option<i32> {
+        let Then::Lower(LowerEdge { column, right }) = self.then else { return None };
+        *(if right { &mut pair.right } else { &mut pair.left }) = column;
+        Some(self.end)
+    }
+
+    /// Computes edges again for the rows from `row`, as [`Self::next`] continues others.
+    pub(crate) fn anew(&self, row: i32, pair: &mut LeftRight, corners: [[i32; 2]; 3]) -> i32 {
+        let Then::Anew(columns) = self.then else { return self.end };
         let stop;
-        match self.then {
-            Then::Lower(LowerEdge { column, right }) => {
-                *(if right { &mut pair.right } else { &mut pair.left }) = column;
-                stop = self.end;
-            }
-            Then::Anew(columns) => (stop, *pair) = self.next_large(row, corners, columns),
-        }
+        (stop, *pair) = self.next_large(row, corners, columns);
         stop
     }
 
