@@ -11,7 +11,6 @@
 use crate::{
     arch::product::upper,
     features::LIGHTS,
-    format::{HAVERSINE, UNIT},
     interpolate::field::Field,
     lighting::{
         lights::Source,
@@ -21,7 +20,6 @@ use crate::{
     math::{
         highlight_lut::CosineLookup,
         rsqrt::{HalfRsqrt, Root},
-        vector::{add, narrow_dot, wide},
     },
     method::{
         CornerCosines, Loops, Shading, Style, TriangleSetup,
@@ -33,7 +31,7 @@ use crate::{
         largest,
         lighting_model::{LightingModel, Lit},
         node::is_steep,
-        products::{FIELD_EXTRA, FIELD_NODE, QuadraticNodes, linear, signed},
+        products::{FIELD_EXTRA, QuadraticNodes, linear, signed},
     },
     pixel::Pixel,
     raster::{band::Band, canvas::Canvas},
@@ -70,6 +68,9 @@ where
     shading.draw_lit(setup, |source| shading.constant_products(setup, source), common, model, canvas)
 }
 
+/// The largest exponent of a highlight that loops draw: [`crate::math::rsqrt::HALF_ERROR`] makes an error of 0.1 of 1/255 there.
+pub(super) const STEEPEST: u16 = 256;
+
 /// The loops under constant lights.
 pub(crate) struct Duff;
 
@@ -101,16 +102,18 @@ pub(crate) fn draw<C: Pixel>(
     let reflectance = tables.reflectance;
     let has_highlight = || match reflectance.lights() {
         1 => largest(&corners()[1]) >= setup.highlight_threshold(reflectance),
-        lights => lights != SUMMED,
+        _ => true,
     };
-    if is_steep(shading.exponent) && has_highlight() {
+    let is_steep = is_steep(shading.exponent) && has_highlight();
+    // Summed lights are asked for their highlights later.
+    if is_steep && shading.exponent > STEEPEST && reflectance.lights() != SUMMED {
         return None;
     }
     // |N|² has two more bits than other quadratics, and its root is half as steep.
     if setup.gradients.is_any() && !setup.gradients.steep(setup.gradients.steepness().halved(3)).walks_in_words() {
         return None;
     }
-    let lengths = Lengths::of(setup)?;
+    let lengths = Lengths::of(setup, is_steep)?;
     // Greys have one channel, in which nothing is summed.
     if LIGHTS && !C::GRAY && reflectance.lights() > 1 {
         return if reflectance.sums_lights() {
@@ -131,27 +134,7 @@ pub(super) fn tabled(setup: &TriangleSetup<'_>) -> Option<UnitSquare> {
 /// |N|², Q2.30: exactly quadratic, and for steep highlights exact.
 #[inline(always)]
 pub fn square(setup: &TriangleSetup<'_>, exponent: u16) -> QuadraticNodes<1> {
-    let nodes = if is_steep(exponent) {
-        exact(setup)
-    } else {
-        // |N|² - 1 is zero at the corners.
-        let [ab, bc, ca] = setup.edges(setup.triangle.haversine).map(|haversine| -(i32::from(haversine) << (FIELD_NODE - HAVERSINE)));
-        [0, 0, 0, ab, bc, ca]
-    };
-    QuadraticNodes::new([nodes], FIELD_EXTRA).biased([1 << 30])
-}
-
-/// Six nodes of |N|² - 1 by the normals themselves, which are of unit length but for the rounding of their components.
-#[cold]
-#[inline(never)]
-fn exact(setup: &TriangleSetup<'_>) -> [i32; 6] {
-    let [a, b, c] = setup.vertices().map(|vertex| wide(vertex.normal));
-    let square = |v: [i32; 3]| narrow_dot(v, v);
-    // Products of normals have 28 fraction bits. Half-way between two, the normal is half their sum, and its square a quarter.
-    let node = |square: i32, bits: u32| (square.wrapping_sub(1 << bits).wrapping_add(1 << (bits - FIELD_NODE - 1))) >> (bits - FIELD_NODE);
-    let corner = |v: [i32; 3]| node(square(v), 2 * UNIT);
-    let middle = |a: [i32; 3], b: [i32; 3]| node(square(add(a, b)), 2 * UNIT + 2);
-    [corner(a), corner(b), corner(c), middle(a, b), middle(b, c), middle(c, a)]
+    QuadraticNodes::new([scale::squares(setup, is_steep(exponent))], FIELD_EXTRA).biased([1 << 30])
 }
 
 /// Normalises by 1/|N| from a table, for |N|² in [1/4, 1]; |N|² minus [`crate::math::rsqrt::LEAST`] is walked.

@@ -11,12 +11,16 @@
 use crate::{
     arch::product::{product, unsigned_product},
     features::PERSPECTIVE,
-    format::{COSINE, HAVERSINE, NORMAL_LENGTH},
+    format::{COSINE, HAVERSINE, NORMAL_LENGTH, UNIT},
     interpolate::{
         field::{Field, Nodes},
         quadric::Quadric,
     },
-    math::{recip::recip, rsqrt::LEAST},
+    math::{
+        recip::recip,
+        rsqrt::LEAST,
+        vector::{add, narrow_dot, wide},
+    },
     method::{
         TriangleSetup,
         node::map_six,
@@ -33,9 +37,14 @@ const HAVERSINE_BITS: u32 = HAVERSINE - 1;
 /// The squared lengths of normals of unit length at six nodes.
 pub(super) type UnitSquare = Nodes<6, 1, HAVERSINE_BITS>;
 
-/// The lengths that the normals at the corners have, Q2.30; `None` if all are 1.
+/// The lengths of normals over a triangle.
 #[derive(Clone, Copy)]
-pub(super) struct Lengths(Option<[i32; 3]>);
+pub(super) struct Lengths {
+    /// The lengths that the normals at the corners have, Q2.30; `None` if all are 1.
+    scaled: Option<[i32; 3]>,
+    /// Whether a steep highlight shows that the components of normals are rounded.
+    is_steep: bool,
+}
 
 /// Whether interpolated normals stay in the table of roots, if no edge bends by more than 90 degrees: no normal is shorter than 1/2.
 pub(super) fn is_flat(setup: &TriangleSetup<'_>) -> bool {
@@ -51,10 +60,34 @@ pub(super) fn unit_square(setup: &TriangleSetup<'_>) -> UnitSquare {
     Nodes::new([nodes], 32 - HAVERSINE).biased([0u32.wrapping_sub(LEAST) as i32])
 }
 
+/// Six nodes of |N|² - 1, with [`FIELD_NODE`] fraction bits, where normals are of unit length at the corners. For steep highlights they are exact.
+#[inline(always)]
+pub(super) fn squares(setup: &TriangleSetup<'_>, is_steep: bool) -> [i32; 6] {
+    if is_steep {
+        return exact_squares(setup);
+    }
+    // Zero at the corners.
+    let [ab, bc, ca] = setup.edges(setup.triangle.haversine).map(|haversine| -(i32::from(haversine) << (FIELD_NODE - HAVERSINE)));
+    [0, 0, 0, ab, bc, ca]
+}
+
+/// [`squares`] by the normals themselves, which are of unit length but for the rounding of their components.
+#[cold]
+#[inline(never)]
+fn exact_squares(setup: &TriangleSetup<'_>) -> [i32; 6] {
+    let [a, b, c] = setup.vertices().map(|vertex| wide(vertex.normal));
+    let square = |v: [i32; 3]| narrow_dot(v, v);
+    // Products of normals have 28 fraction bits. Half-way between two, the normal is half their sum, and its square a quarter.
+    let node = |square: i32, bits: u32| (square.wrapping_sub(1 << bits).wrapping_add(1 << (bits - FIELD_NODE - 1))) >> (bits - FIELD_NODE);
+    let corner = |v: [i32; 3]| node(square(v), 2 * UNIT);
+    let middle = |a: [i32; 3], b: [i32; 3]| node(square(add(a, b)), 2 * UNIT + 2);
+    [corner(a), corner(b), corner(c), middle(a, b), middle(b, c), middle(c, a)]
+}
+
 impl Lengths {
     /// The lengths for this triangle. `None` if an interpolated normal may leave the table of roots.
     #[inline(always)]
-    pub(super) fn of(setup: &TriangleSetup<'_>) -> Option<Self> {
+    pub(super) fn of(setup: &TriangleSetup<'_>, is_steep: bool) -> Option<Self> {
         if !is_flat(setup) {
             return None;
         }
@@ -65,15 +98,15 @@ impl Lengths {
             let lengths = over_largest(inv_depth);
             let [a, b, c] = lengths;
             let least = product(a.min(b).min(c), i32::from(setup.triangle.min_normal_length)) >> NORMAL_LENGTH;
-            return (least >= i64::from(ONE / 2)).then_some(Self(Some(lengths)));
+            return (least >= i64::from(ONE / 2)).then_some(Self { scaled: Some(lengths), is_steep });
         }
-        Some(Self(None))
+        Some(Self { scaled: None, is_steep })
     }
 
     /// The cosines of a direction with the normals at the corners, Q2.30, as they are interpolated.
     #[inline(always)]
     pub(super) fn apply(&self, cosines: &[i32; 3]) -> [i32; 3] {
-        match self.0 {
+        match self.scaled {
             Some(lengths) if PERSPECTIVE => scaled(lengths, *cosines),
             _ => *cosines,
         }
@@ -82,11 +115,24 @@ impl Lengths {
     /// The field |N|² minus [`LEAST`], Q0.32.
     #[inline(always)]
     pub(super) fn square(&self, setup: &TriangleSetup<'_>) -> Quadric<1> {
-        match self.0 {
-            Some(lengths) if PERSPECTIVE => scaled_square(setup, lengths),
+        match self.scaled {
+            Some(lengths) if PERSPECTIVE => scaled_square(setup, lengths, self.is_steep),
+            _ if self.is_steep => exact_square(setup),
             _ => unit_square(setup).fit(setup.gradients),
         }
     }
+}
+
+/// The field of exact squares.
+#[inline(never)]
+fn exact_square(setup: &TriangleSetup<'_>) -> Quadric<1> {
+    let nodes = map_six(exact_squares(setup), |square| square.wrapping_add((1 << FIELD_NODE) - (LEAST >> (32 - FIELD_NODE)) as i32));
+    fit(setup, nodes)
+}
+
+/// The field of these nodes, with [`FIELD_NODE`] fraction bits.
+fn fit(setup: &TriangleSetup<'_>, nodes: [i32; 6]) -> Quadric<1> {
+    fitted(&Nodes::<6, 1, { FIELD_BITS - 2 }>::new([nodes], 32 - FIELD_NODE), setup.gradients)
 }
 
 /// Inverse depths divided by the largest of them, Q2.30.
@@ -110,15 +156,16 @@ fn by(a: i32, b: i32) -> i32 {
 }
 
 #[inline(never)]
-fn scaled_square(setup: &TriangleSetup<'_>, [a, b, c]: [i32; 3]) -> Quadric<1> {
-    let [ab, bc, ca] = setup.edges(setup.triangle.haversine);
-    // |(l M + m N) / 2|² = ((l + m) / 2)² - l m h, where 1 - h is the square of half of M + N.
-    let middle = |l: i32, m: i32, haversine: u16| {
+fn scaled_square(setup: &TriangleSetup<'_>, [l, m, n]: [i32; 3], is_steep: bool) -> Quadric<1> {
+    let [a, b, c, ab, bc, ca] = map_six(squares(setup, is_steep), |square| square << (COSINE - FIELD_NODE));
+    // |l M|² = l² + l² (M² - 1). Half-way the square is |(l M + m N) / 2|², and twice M·N is 4 |(M + N) / 2|² - M² - N².
+    let corner = |l: i32, a: i32| by(l, l) + by(by(l, l), a);
+    let middle = |l: i32, m: i32, a: i32, b: i32, ab: i32| {
         let half = (l >> 1) + (m >> 1);
-        by(half, half) - (product(by(l, m), haversine.into()) >> HAVERSINE) as i32
+        by(half, half) + ((by(by(l, l), a) + by(by(m, m), b)) >> 2) - by(by(l, m), ((a + b) >> 2) - ab)
     };
-    let squares = [by(a, a), by(b, b), by(c, c), middle(a, b, ab), middle(b, c, bc), middle(c, a, ca)];
+    let squares = [corner(l, a), corner(m, b), corner(n, c), middle(l, m, a, b, ab), middle(m, n, b, c, bc), middle(n, l, c, a, ca)];
     // Rounded to the bits of a node. The sum wraps where a square is 1, and is a word again without the least.
     let node = |square: i32| (((square as u32) << 2).wrapping_sub(LEAST).wrapping_add(1 << (31 - FIELD_NODE)) >> (32 - FIELD_NODE)) as i32;
-    fitted(&Nodes::<6, 1, { FIELD_BITS - 2 }>::new([map_six(squares, node)], 32 - FIELD_NODE), setup.gradients)
+    fit(setup, map_six(squares, node))
 }

@@ -27,12 +27,12 @@ use crate::{
     method::{
         Shading, TriangleSetup,
         cosines::{
+            duff::STEEPEST,
             lit::{FromValues, LitShader},
             quotient::{HalfReciprocal, LEVEL, NODE, PIXEL, Quotient, RANGE, colour, is_plane, numerator, plane},
             scale::Lengths,
         },
         largest,
-        node::is_steep,
     },
     pixel::{Pixel, by_rows::ByRows},
     raster::{band::Band, pixel_shader::PixelShader},
@@ -168,7 +168,7 @@ pub(super) fn draw<C: Pixel>(
         colours = colours.in_ambient(&ambient);
     }
     let lights = &lights;
-    if is_steep(shading.exponent) && lights.is_visible {
+    if shading.exponent > STEEPEST && lights.is_visible {
         return None;
     }
     let [without_highlight, without_light] = lights.without;
