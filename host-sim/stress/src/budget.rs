@@ -86,8 +86,8 @@ pub struct Found {
     pub cheaper: u64,
 }
 
-/// Compares a frame by `auto` with Phong shading. Under near lights, for a near viewer, and where normals are [`SHORT`], it has to be what the
-/// core's `phong` draws. `None` if it cannot be drawn.
+/// Compares a frame by `auto` with Phong shading. Where normals are [`SHORT`], it has to be what the core's `phong` draws. What `phong` draws under near
+/// lights or for a near viewer is right, because the family of arithmetic judges it. `None` if the frame cannot be drawn.
 #[must_use]
 pub fn judge(case: &Case) -> Option<Found> {
     let (stream, [width, height], number) = (case.stream.parse().ok()?, case.size, case.frame);
@@ -115,16 +115,16 @@ pub fn judge(case: &Case) -> Option<Found> {
             let (shade, _) = shades.entry(candidate).or_insert_with(|| (phong(&frame, facet), false));
             // The centre of a pixel may lie a little outside of a thin triangle, where normals are shorter than anywhere on it.
             let length = length(facet.normal(facet.weights(point))).max(facet.min_normal_length);
-            let is_clear = frame.is_constant() && length >= SHORT;
+            let (is_clear, is_judged) = (length >= SHORT, frame.is_constant());
             error = error.min(match (is_clear, same) {
-                (true, _) => {
+                (true, _) if is_judged || !same => {
                     let off = |light| arithmetic::difference(levels, walked.shown(&frame, facet, light));
                     let exactly = off(shade(point));
                     let beside = || facet.within(point).into_iter().map(|facet| off(phong(&frame, &facet)(point)));
                     if exactly <= UNDECIDED { exactly } else { beside().fold(exactly, f64::min) }
                 }
-                (false, true) => 0.0,
-                (false, false) => f64::INFINITY,
+                (_, true) => 0.0,
+                (_, false) => f64::INFINITY,
             });
         }
         if let Some((_, cheaper)) = candidates.first().and_then(|nearest| shades.get_mut(nearest)) {

@@ -12,7 +12,13 @@ use microphong::{
         viewport::Bounds,
     },
     interpolate::Constant,
-    raster::{active::ActiveTriangles, band::Band, counts::Counts, pixel_shader::Solid, triangle::{ScreenTriangle, turned}},
+    raster::{
+        active::ActiveTriangles,
+        band::Band,
+        counts::Counts,
+        pixel_shader::Solid,
+        triangle::{ScreenTriangle, turned},
+    },
     setup::gradients::Gradients,
 };
 

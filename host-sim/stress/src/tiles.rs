@@ -73,7 +73,7 @@ fn scene(random: &mut Random, hard: Hard) -> (Mesh, Look, [u32; 2]) {
     let view = if !hard.local && random.once_in(2) { view.parallel() } else { view };
     look.view = view.fit(&mesh.positions, size.into(), 0.01);
     look.lamps = lamps(random, look.view.translation, hard.near);
-    // A near viewer is seen by highlights, and is shaded by Phong alone.
+    // A near viewer is seen by highlights.
     look.local_viewer = hard.local || random.once_in(8);
     for kind in kinds {
         let facing = facing(random, &look);
@@ -105,7 +105,7 @@ fn corners(random: &mut Random, kind: Kind, pixel: f64) -> [[f64; 2]; 3] {
     corners
 }
 
-/// One to four lights. Few are near ones, because under these all triangles are drawn by Phong shading.
+/// One to four lights, of which few are near ones.
 fn lamps(random: &mut Random, object: V3, certainly_near: bool) -> Vec<Lamp> {
     let near = certainly_near || random.once_in(6);
     let count = random.among(&[1, 1, 1, 2, 2, 2, 3, 4]);

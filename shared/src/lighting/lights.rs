@@ -5,7 +5,10 @@ use crate::{
     features::{ALWAYS_CONSTANT, LIGHT_SHAPES, LIGHTS, NEAR_LIGHTS},
     format::{COSINE, MAX_LIGHTS, POSITION, UNIT},
     geometry::model_view::ModelView,
-    lighting::shape::{STRENGTH, Shape},
+    lighting::{
+        facing::Facing,
+        shape::{STRENGTH, Shape},
+    },
     math::vector::{add, dot, map, narrow_dot, normalise, sub, wide},
     stream::record::{Camera, EYE_SPACE, Light, PERSPECTIVE, POINT, SKY, VIEWER_LOCAL},
 };
@@ -138,10 +141,15 @@ impl Lighting {
         }
     }
 
-    /// Computes how each light falls on a surface at `position` (Q7.25) with the normal `normal` (Q2.30, at most unit length).
-    pub fn incident(&self, position: [i32; 3], normal: [i32; 3]) -> impl Iterator<Item = Incident> {
-        let cosines = move |source| self.directions(source, position).map(|direction| cosine(normal, direction));
-        self.sources().iter().map(move |source| source.incident(cosines(source), Some(position)))
+    /// Computes how each light falls on a surface at `position` (Q7.25) with the normal `normal` (Q2.30, at most unit length), and adds it to `facing`.
+    pub(crate) fn incident(&self, position: [i32; 3], normal: [i32; 3], mut facing: Option<&mut Facing>) -> impl Iterator<Item = Incident> {
+        self.sources().iter().enumerate().map(move |(light, source)| {
+            let incident = source.incident(self.directions(source, position).map(|direction| cosine(normal, direction)), Some(position));
+            if let Some(facing) = &mut facing {
+                facing.add(light, source.is_sky(), [incident.towards, incident.half]);
+            }
+            incident
+        })
     }
 
     /// The unit vectors L and H of a light at `position` (Q7.25), Q2.30.
@@ -163,12 +171,17 @@ impl Lighting {
         !NEAR_LIGHTS || self.directional & !self.is_local & 1 != 0
     }
 
+    /// Whether a light has a cone, at whose edge it bends so much that nothing can be interpolated.
+    #[must_use]
+    pub(crate) fn has_cone(&self) -> bool {
+        self.sources().iter().any(|source| source.shape().is_some_and(|(shape, _)| shape.has_cone()))
+    }
+
     /// Whether either all lights or the viewer are near, and the other is infinitely far, and the light has no other shape than a range. Domain: one
     /// light.
     #[must_use]
     pub(crate) fn has_one_near(&self) -> bool {
-        let is_simple = |source: &Source| !source.is_sky() && !source.shape().is_some_and(|(shape, _)| shape.has_cone());
-        NEAR_LIGHTS && (self.directional != 0) == self.is_local() && self.sources().iter().all(is_simple)
+        NEAR_LIGHTS && (self.directional != 0) == self.is_local() && !self.has_cone() && !self.sources().iter().any(Source::is_sky)
     }
 
     #[inline]

@@ -2,6 +2,7 @@
 
 pub mod albedo;
 pub mod constant_lights;
+pub(crate) mod facing;
 pub mod highlight_tables;
 pub mod lights;
 pub mod material_tables;

@@ -55,8 +55,9 @@ impl<C: Pixel> Drawing<'_, C> {
         Style {
             three_channels: reflectance.three_channels(),
             lights: if lighting.is_constant() { reflectance.lights() } else { 0 },
+            is_near: !(lighting.is_constant() || C::GRAY && self.pass.stage.is_coloured()),
             // Boards with displays of greys have little flash: no loops there.
-            one_near: !C::GRAY && lighting.has_one_near() && reflectance.lights() == 1 && !self.pass.stage.is_coloured(),
+            one_near: !C::GRAY && lighting.has_one_near() && reflectance.lights() == 1,
             by_canvas: !self.colourist().suits_loops(),
             perspective: *perspective,
             is_coloured: self.pass.stage.is_coloured(),

@@ -9,6 +9,7 @@ use crate::{
     },
     lighting::{
         albedo::IfColoured,
+        facing::Facing,
         lights::{Lighting, MeanNormal, point, vertex_cosine},
         reflectance::LitMaterial,
         summed,
@@ -57,7 +58,11 @@ impl VertexStage<'_> {
     /// Whether vertices hold levels, or nothing, unless there is one constant light.
     #[inline(always)]
     fn has_levels(&self) -> bool {
-        !matches!(self.light, VertexLight::Cosines | VertexLight::CosinesAndReflection)
+        match self.light {
+            VertexLight::Cosines => false,
+            VertexLight::CosinesAndReflection => !(self.lighting.is_constant() || self.lighting.has_cone()),
+            _ => true,
+        }
     }
 
     /// The corners `[x, y]` on the screen, clockwise, which is against the order of the stream; `None` if one is not cached or needs
@@ -183,11 +188,12 @@ impl VertexStage<'_> {
             true if has_levels => of_levels(reflectance.constant_levels(lighting.sources(), &MeanNormal::at(normal))),
             true if reflectance.has_two_lights() => self.cosines_of_two_lights(normal),
             true if reflectance.sums_lights() => summed::at_vertex(reflectance, lighting.sources(), normal),
-            false if holds_parts => {
-                reflectance.parts(lighting.incident(point(vertex.position), map(normal, |c| c << (30 - UNIT)))).packed()
-            }
             false if has_levels => {
-                of_levels(reflectance.levels(lighting.incident(point(vertex.position), map(normal, |c| c << (30 - UNIT)))))
+                let mut facing = Facing::default();
+                let wanted = (self.light == VertexLight::CosinesAndReflection).then_some(&mut facing);
+                let incident = lighting.incident(point(vertex.position), map(normal, |c| c << (30 - UNIT)), wanted);
+                let levels = if holds_parts { reflectance.parts(incident).packed() } else { of_levels(reflectance.levels(incident)) };
+                facing.beside(levels)
             }
             _ => [0; 4],
         }

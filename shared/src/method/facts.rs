@@ -102,7 +102,7 @@ pub enum VertexLight {
     /// The cosines N·L and N·H (Q2.30) and a third number, if there is just one light, which is directional, and the viewer is infinitely
     /// distant. N is the normal, L the direction to the light, and H the half vector between light and viewer. The third number is the
     /// light level (Q9.7) on a material that is drawn in one channel, and the strength of the highlight (unsigned Q0.16) on one that is
-    /// drawn in three. In all other scenes it is like [`Self::Cosines`].
+    /// drawn in three. If a light or the viewer is near, it is like [`Self::Levels`], and in all other scenes like [`Self::Cosines`].
     #[doc(hidden)]
     CosinesAndReflection,
     /// The light levels of red, green and blue, for any number and kind of lights: see [`TriangleSetup::levels`](crate::method::TriangleSetup::levels).

@@ -127,6 +127,8 @@ pub(crate) struct Style {
     pub(crate) three_channels: bool,
     /// Number of constant lights as [`Reflectance::lights`], if their levels fit the formats of [`crate::lighting::constant_lights`]; otherwise 0.
     pub(crate) lights: u8,
+    /// Whether a light or the viewer is near, and the corners have no colours in greys.
+    pub(crate) is_near: bool,
     /// Whether there is one light, and either it or the viewer is near, and its levels fit these formats.
     pub(crate) one_near: bool,
     /// Whether only a canvas can make the colours: by the curve of a display on three channels that are not light.

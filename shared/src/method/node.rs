@@ -53,14 +53,14 @@ impl Shading<'_> {
         if let Some([towards, half]) = self.constant {
             return self.reflectance.one_light([cosine(node.normal, towards), cosine(node.normal, half)]);
         }
-        self.reflectance.levels(self.lighting.incident(node.position, node.normal))
+        self.reflectance.levels(self.lighting.incident(node.position, node.normal, None))
     }
 }
 
 impl Shading<'_> {
     /// The parts of light at `node`.
     pub(crate) fn parts(&self, node: &Node) -> Parts {
-        self.reflectance.parts(self.lighting.incident(node.position, node.normal))
+        self.reflectance.parts(self.lighting.incident(node.position, node.normal, None))
     }
 
     /// The parts of light at the middles of the edges 0-1, 1-2 and 2-0 in space.

@@ -14,10 +14,8 @@ const CLOSE: f64 = -f64::MIN_POSITIVE;
 
 /// Shades as `auto`. The choice follows from bounds that only the core knows. The first result is Phong shading, and each of the five ways counts as
 /// a decision that may fall either way, so arithmetic is compared with all of them.
-///
-/// Near lights or a near viewer are always drawn by Phong shading.
 pub(super) fn shade<'f, const QUADRATICS: bool>(frame: &'f Frame, facet: &'f Facet, decide: &'f Decide<'f>) -> Shade<'f> {
-    if !frame.is_constant() || !decide(CLOSE) {
+    if !decide(CLOSE) {
         return phong(frame, facet);
     }
     match (decide(CLOSE), decide(CLOSE)) {
@@ -37,7 +35,10 @@ pub fn chosen<'f>(frame: &'f Frame, facet: &'f Facet, Chosen { way, raises }: Ch
     }
     let shade = match way {
         // Under one light in three channels, or on a surface with colours, the core has no levels at the corners, but a cosine and a highlight.
-        Way::OneColour => solid(frame, facet, frame.lights.len() == 1 && (facet.albedos.is_some() || frame.only_channel(facet).is_none())),
+        Way::OneColour => {
+            let one = frame.is_constant() && frame.lights.len() == 1;
+            solid(frame, facet, one && (facet.albedos.is_some() || frame.only_channel(facet).is_none()))
+        }
         Way::Linear => gouraud::shade(frame, facet),
         Way::Quadratic => six_point::shade(frame, facet),
         Way::Cosines => sqrt6::by_cosines(frame, facet),

@@ -1,9 +1,13 @@
 //! The choice of the cheapest way to draw a triangle within an error budget, by the bounds of [`crate::method::ErrorBounds`].
 
-use super::costs::SAVINGS;
+use super::{
+    costs::SAVINGS,
+    near,
+    way::{Choice, is_clamped, linear_raise},
+};
 use crate::{
     features::PERSPECTIVE,
-    format::{ErrorBudget, FULL, LARGEST_BUDGET, LEVEL},
+    format::FULL,
     geometry::projection::ScreenVertex,
     lighting::{
         albedo::{Albedo, Parts, SHARE},
@@ -17,65 +21,9 @@ use crate::{
         largest, largest_range,
         levels::gouraud,
     },
-    raster::counts::Counts,
     setup::edge::COLUMNS,
     stream::record::Vertex,
 };
-
-/// A way to draw a triangle.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub enum Choice {
-    /// One colour: the mean of the extremes at the corners, raised by these levels, Q9.7.
-    Solid(i32),
-    /// Linear interpolation between the corners, raised by these levels, Q9.7.
-    Linear(i32),
-    /// Levels at six nodes, interpolated quadratically.
-    Quadratic,
-    /// Cosines at six nodes, interpolated quadratically; highlights are looked up at the pixel.
-    Cosines,
-    /// Phong shading.
-    Phong,
-}
-
-impl Choice {
-    /// The choice in 16 bits, not all of which are 0, for the bands below. Levels by which light is raised are at most the largest budget.
-    pub(super) fn packed(self) -> u16 {
-        const { assert!((LARGEST_BUDGET.to_bits() as u32) << (LEVEL - ErrorBudget::FRAC_NBITS) < 1 << 12) };
-        let (kind, raise) = match self {
-            Self::Solid(raise) => (1, raise),
-            Self::Linear(raise) => (2, raise),
-            Self::Quadratic => (3, 0),
-            Self::Cosines => (4, 0),
-            Self::Phong => (5, 0),
-        };
-        (raise << 3) as u16 | kind
-    }
-
-    /// The choice that has been packed; `None` if there is none.
-    pub(super) fn unpacked(bits: u16) -> Option<Self> {
-        let raise = i32::from(bits as i16 >> 3);
-        match bits & 7 {
-            1 => Some(Self::Solid(raise)),
-            2 => Some(Self::Linear(raise)),
-            3 => Some(Self::Quadratic),
-            4 => Some(Self::Cosines),
-            5 => Some(Self::Phong),
-            _ => None,
-        }
-    }
-
-    /// The count of triangles that are drawn in this way.
-    pub(super) fn count(self, counts: &mut Counts) -> &mut u32 {
-        let [solid, linear, quadratic, cosines, phong] = &mut counts.choices;
-        match self {
-            Self::Solid(_) => solid,
-            Self::Linear(_) => linear,
-            Self::Quadratic => quadratic,
-            Self::Cosines => cosines,
-            Self::Phong => phong,
-        }
-    }
-}
 
 /// Chooses how to draw a triangle.
 #[must_use]
@@ -90,7 +38,9 @@ pub(super) fn choose_lit<const QUADRATICS: bool>(setup: &TriangleSetup<'_>, shad
     // In functions of their own: together they would need more registers than there are.
     if shading.vertices_have_cosines() {
         under_one_light::<QUADRATICS>(setup, shading)
-    } else if shading.reflectance.has_two_lights() && shading.lighting.is_constant() {
+    } else if !shading.lighting.is_constant() {
+        near::choose(setup, shading).unwrap_or(Choice::Phong)
+    } else if shading.reflectance.has_two_lights() {
         under_two_lights::<QUADRATICS>(setup, shading)
     } else if shading.reflectance.sums_lights() {
         let choice = match uniform {
@@ -193,12 +143,6 @@ pub(super) fn is_uniform(setup: &TriangleSetup<'_>) -> bool {
     // Number by number: whole arrays are compared by a call.
     let same = |[p, q, r, s]: [i32; 4], other: [i32; 4]| p == other[0] && q == other[1] && r == other[2] && s == other[3];
     same(a, b) && same(a, c)
-}
-
-/// Whether a level of the corners may have been clamped at 255.
-#[inline(always)]
-fn is_clamped(levels: &[[i32; 3]; 3]) -> bool {
-    levels.as_flattened().iter().any(|&level| level >= FULL)
 }
 
 /// One colour or linear interpolation under one constant light, where linear interpolation has these bounds; `None` if levels of the corners may have
@@ -361,21 +305,13 @@ fn uniformly_lit(setup: &TriangleSetup<'_>, &parts: &Parts, budget: u32) -> Opti
     }
 }
 
-/// By how much levels are raised so that linear interpolation, whose errors lie in `interval`, keeps to the budget; `None` if it does not in
-/// perspective. Levels at the corners differ by `range`.
-#[inline(always)]
-fn linear_raise(setup: &TriangleSetup<'_>, interval: Interval, budget: u32, range: impl FnOnce() -> u32) -> Option<i32> {
-    if !PERSPECTIVE || !setup.perspective {
-        return Some(interval.raise(budget));
-    }
-    let rest = budget.checked_sub(setup.plane_error(range()))?;
-    (interval.half() <= rest).then(|| interval.raise(rest))
-}
-
-/// The levels at the corners under two constant lights, or where the diffuse light of several is summed. If light is `uniform`, it has these parts.
+/// The levels at the corners under near lights, under two constant lights, or where the diffuse light of several is summed. If light is `uniform`, it has these parts.
 #[inline(never)]
 pub(super) fn corner_levels(setup: &TriangleSetup<'_>, shading: &Shading<'_>, uniform: Option<&Parts>) -> [[i32; 3]; 3] {
     let ([a, b, c], reflectance) = (setup.corners, shading.reflectance);
+    if !shading.lighting.is_constant() {
+        return setup.levels();
+    }
     if reflectance.sums_lights() {
         return summed_levels(setup, shading, uniform);
     }

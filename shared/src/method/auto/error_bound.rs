@@ -77,13 +77,13 @@ pub struct ErrorBounds {
 const BOUND: u32 = 15;
 
 /// A number in Q16, rounded up.
-const fn share(x: f64) -> u32 {
+pub(super) const fn share(x: f64) -> u32 {
     (x * 65_536.0) as u32 + 1
 }
 
 /// `x` times a number in Q16, rounded up.
 #[inline]
-fn times(x: u32, share: u32) -> u32 {
+pub(super) fn times(x: u32, share: u32) -> u32 {
     (unsigned_product(x, share) >> 16) as u32 + 1
 }
 
@@ -145,6 +145,14 @@ impl Curvature {
         // 1/ρ - 1 = s + s²/(1 - s) for s = 1 - ρ, and 1/(1 - s) is at most 5/4 here.
         let longer = short.wrapping_add(short.wrapping_mul(short).wrapping_mul(5) >> (NORMAL_LENGTH + 2)).wrapping_add(1);
         (short <= SHORTEST).then_some(Self { short, longer })
+    }
+
+    /// The longest distance between two corners' normals over ρ, Q0.16, rounded up.
+    #[inline]
+    pub(super) fn turn(self, triangle: &Triangle) -> u32 {
+        let [ab, bc, ca] = triangle.haversine;
+        let distance = 2 * rooted((u32::from(ab.max(bc).max(ca)) + 1).min(WIDEST));
+        distance + ((distance * self.longer) >> BOUND) + 1
     }
 
     /// The remainder of the quadratic through six points over the third derivative of what is interpolated, Q0.32.
@@ -454,7 +462,7 @@ impl ErrorBounds {
 
 /// The root of `x`, Q0.16, rounded up. Domain: 1 to 2^17. Error: 6 %.
 #[inline]
-fn rooted(x: u32) -> u32 {
+pub(super) fn rooted(x: u32) -> u32 {
     // x moved up by an even number of bits, to 2^30 at least: its root is below the entry.
     let zeros = x.leading_zeros() & 30;
     let root = ROOTS[(((x << zeros) >> 27) as usize).saturating_sub(8) % ROOTS.len()];

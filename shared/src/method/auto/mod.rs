@@ -1,8 +1,9 @@
 //! The method `auto`: for each triangle the cheapest way that is guaranteed to stay within an error budget.
 //!
 //! A triangle is drawn in one colour, by linear or quadratic interpolation of levels, or by quadratic interpolation of cosines, if [`ErrorBounds`]
-//! allow it, and otherwise by Phong shading. Under near lights, light from the sky, for a near viewer, and under more than two lights all triangles are
-//! drawn by Phong shading. The choice follows from constants of the mesh and from the cosines at the corners, in integers, so it is the same on every machine.
+//! allow it, and otherwise by Phong shading. Under near lights, for a near viewer, and under more than two lights the choice is between one colour, linear
+//! interpolation and Phong shading; lights with a cone leave Phong shading alone. The choice follows from constants of the mesh and from the light at the
+//! corners, in integers, so it is the same on every machine.
 //!
 //! Bounds tell by how much linear interpolation may be too dark, and by how much too bright. If one of the two exceeds the budget but their mean does
 //! not, all levels of the triangle are raised or lowered until both are within the budget.
@@ -16,6 +17,8 @@ pub mod costs;
 pub mod error_bound;
 #[doc(hidden)]
 pub mod highlight_error;
+mod near;
+mod way;
 
 use crate::{
     format::FULL,
@@ -38,9 +41,10 @@ use crate::{
     pixel::Pixel,
     raster::{band::Band, canvas::Canvas, pixel_shader::Solid},
 };
-pub use choice::{Choice, choose};
+pub use choice::choose;
 use choice::{choose_lit, corner_levels, extremes, is_uniform, uniform_parts};
 use core::hint::black_box;
+pub use way::Choice;
 
 static FACTS: Facts = Facts {
     name: "auto",
@@ -82,9 +86,9 @@ fn half_way_parts(setup: &TriangleSetup<'_>, reflectance: &Reflectance) -> Parts
     reflectance.reflected_parts(half_way(setup, 0, 0), half_way(setup, 2, 0) as u32)
 }
 
-/// [`middle`] where the diffuse light of several lights is summed.
+/// [`middle`] from the levels at the corners.
 #[inline(never)]
-fn summed_middle(setup: &TriangleSetup<'_>, shading: &Shading<'_>, uniform: Option<&Parts>, raises: [i32; 3]) -> [i32; 3] {
+fn middle_of_levels(setup: &TriangleSetup<'_>, shading: &Shading<'_>, uniform: Option<&Parts>, raises: [i32; 3]) -> [i32; 3] {
     if let Some(&parts) = uniform {
         let albedo = setup.albedos().map_or(Albedo::WHITE, Albedo::half_way);
         return zip(albedo.lit(parts), raises, |level, raise| (level + raise).clamp(0, FULL));
@@ -98,8 +102,8 @@ fn summed_middle(setup: &TriangleSetup<'_>, shading: &Shading<'_>, uniform: Opti
 #[inline(never)]
 fn middle(setup: &TriangleSetup<'_>, shading: &Shading<'_>, uniform: Option<&Parts>, raises: [i32; 3]) -> [i32; 3] {
     let reflectance = shading.reflectance;
-    if reflectance.sums_lights() {
-        return summed_middle(setup, shading, uniform, raises);
+    if reflectance.sums_lights() || !shading.lighting.is_constant() {
+        return middle_of_levels(setup, shading, uniform, raises);
     }
     if let Some(albedos) = setup.albedos() {
         return zip(Albedo::half_way(albedos).lit(half_way_parts(setup, &reflectance)), raises, |level, raise| {
@@ -193,7 +197,7 @@ impl<const QUADRATICS: bool> Loops for Auto<QUADRATICS> {
     const TEXTURES: bool = true;
 
     fn take(style: Style) -> bool {
-        Phong::take(style)
+        Phong::take(style) || style.is_near && style.is_plain()
     }
 
     #[inline(always)]

@@ -25,7 +25,7 @@ use crate::{
         CornerCosines, Loops, Shading, Style, TriangleSetup,
         cosines::{
             quotient,
-            scale::{self, Lengths, UnitSquare},
+            scale::{self, Lengths, STEEPEST, UnitSquare},
             summed,
         },
         largest,
@@ -68,9 +68,6 @@ where
     shading.draw_lit(setup, |source| shading.constant_products(setup, source), common, model, canvas)
 }
 
-/// The largest exponent of a highlight that loops draw: [`crate::math::rsqrt::HALF_ERROR`] makes an error of 0.1 of 1/255 there.
-pub(super) const STEEPEST: u16 = 256;
-
 /// The loops under constant lights.
 pub(crate) struct Duff;
 
@@ -102,6 +99,7 @@ pub(crate) fn draw<C: Pixel>(
     let reflectance = tables.reflectance;
     let has_highlight = || match reflectance.lights() {
         1 => largest(&corners()[1]) >= setup.highlight_threshold(reflectance),
+        2 => setup.corners_of_two_lights().iter().any(|[_, half]| largest(half) >= setup.highlight_threshold(reflectance)),
         _ => true,
     };
     let is_steep = is_steep(shading.exponent) && has_highlight();

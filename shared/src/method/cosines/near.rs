@@ -12,15 +12,17 @@
 //! A light with a range is weaker by its squared distance, which is |P|²; a light with a cone is drawn by the general loop.
 //!
 //! Cost: with a highlight 8 products to evaluate the polynomials, 3 roots from a table, 7 products more and the table of highlights; without one two
-//! roots and three products. Error: the tables' error; the three roots err by at most 4.5e-6 together, which is 0.07 of 1/255 at the exponent 64.
+//! roots and three products. Error: the tables' error; the three roots err by at most 4.5e-6 together, which is 0.15 of 1/255 at the exponent 128.
 //! Beyond this exponent the general loop draws highlights.
 
 use crate::{
     arch::product::upper,
+    features::VERTEX_COLOURS,
     format::{COSINE, UNIT},
     interpolate::{by_column::ByColumn, field::Nodes, plane::Plane, quadric::Quadric},
     lighting::{
-        constant_lights::{DiffuseOnly, LitColours, OneLightRamp, OneLightRgb, Shades, WithHighlight, node},
+        albedo::Albedo,
+        constant_lights::{Coloured, DiffuseOnly, LitColours, OneLightRamp, OneLightRgb, Shades, WithHighlight, node},
         lights::{Viewer, point},
         material_tables::MaterialTables,
         reflectance::Reflectance,
@@ -34,9 +36,9 @@ use crate::{
     method::{
         CornerCosines, Shading, Style, TriangleSetup,
         cosines::{
-            duff,
             lit::{AtPixel, FromValues, LitShader},
-            scale,
+            quotient::colour,
+            scale::Lengths,
         },
         largest,
         node::{FRACTION, coefficients, field_product, is_steep, map_six},
@@ -52,12 +54,20 @@ const ONE: i32 = 1 << COSINE;
 /// Cosines of N and H where there is no highlight.
 const BEHIND: [i32; 3] = [-ONE; 3];
 
+/// The largest exponent of a highlight that these loops draw: their three roots err by 0.15 of 1/255 there.
+const STEEPEST: u16 = 128;
+
 /// Fraction bits of N·H.
 const HALF: u32 = 25;
 
 /// Whether there are loops for `style`.
 pub(crate) fn take(style: Style) -> bool {
     style.one_near && style.is_plain() && !style.perspective
+}
+
+/// Whether the loops suit the light and the surface of a triangle. A method that takes more styles than they do asks for it.
+pub(crate) fn suits(setup: &TriangleSetup<'_>, shading: &Shading<'_>, reflectance: &Reflectance) -> bool {
+    !setup.has_texture() && !setup.perspective && reflectance.lights() == 1 && shading.lighting.has_one_near()
 }
 
 /// How a triangle has been drawn, or is to be drawn.
@@ -130,7 +140,7 @@ fn draw_weakened<C: Pixel>(
         if ramp.is_none() || products.may_have_highlight(setup, view, tables.reflectance) {
             return draw_highlight::<true, C>(setup, &products, view, left, shading, tables, band);
         }
-        patch = products.diffuse_patch(setup, duff::tabled(setup)?);
+        patch = products.diffuse_patch(setup, Lengths::of(setup, false)?.square_apart(setup));
     }
     setup.count(band.top, &mut band.counts.without_highlight, 1);
     Some(setup.fill(|| patch, LitShader::of::<DiffuseOnly>(ramp?, Diffuse { lengths: HalfRsqrt::get(), left }), band))
@@ -147,17 +157,28 @@ fn draw_highlight<const LIGHT: bool, C: Pixel>(
     tables: MaterialTables<'_, C>,
     band: &mut Band<'_, C>,
 ) -> Option<u32> {
-    if is_steep(shading.exponent) || !setup.gradients.walks_in_words() {
+    if shading.exponent > STEEPEST || !setup.gradients.walks_in_words() {
         return None;
     }
-    let patch = products.patch(setup, fixed, duff::tabled(setup)?);
+    let patch = products.patch(setup, fixed, Lengths::of(setup, is_steep(shading.exponent))?.square_apart(setup));
     let (lookup, lengths) = (shading.reflectance.table()?.by_cosine(), HalfRsqrt::get());
-    let colours = match tables.one_light_rgb() {
-        Some(colours) => Either::Rgb(colours),
-        None => Either::Ramp(tables.one_light_ramp()?),
+    let at = FromProducts::<LIGHT, _> { lookup, lengths, left };
+    let sums;
+    let colours = match (setup.albedos(), tables.one_light_rgb()) {
+        (Some(albedos), Some(_)) if VERTEX_COLOURS => match Albedo::one(albedos) {
+            Some(albedo) => {
+                sums = tables.painted_sums(albedo);
+                Either::Rgb(OneLightRgb::of(&sums))
+            }
+            None => {
+                let shader = LitShader::of::<Coloured<WithHighlight>>(tables.coloured_rgb(), at);
+                return Some(setup.screen.draw(setup.gradients, (patch, colour(setup, albedos)), shader, band));
+            }
+        },
+        (_, Some(colours)) => Either::Rgb(colours),
+        (_, None) => Either::Ramp(tables.one_light_ramp()?),
     };
-    let shader = LitShader::of::<WithHighlight>(colours, FromProducts::<LIGHT, _> { lookup, lengths, left });
-    Some(setup.screen.draw(setup.gradients, patch, shader, band))
+    Some(setup.screen.draw(setup.gradients, patch, LitShader::of::<WithHighlight>(colours, at), band))
 }
 
 /// Products of N, F and P at the corners or at six nodes of a triangle, Q2.30; the longest P is 1.
@@ -217,7 +238,7 @@ impl Products {
 
     /// The polynomials of all products.
     #[inline(never)]
-    fn patch(&self, setup: &TriangleSetup<'_>, fixed: [i32; 3], length: scale::UnitSquare) -> HighlightProducts {
+    fn patch(&self, setup: &TriangleSetup<'_>, fixed: [i32; 3], length: Quadric<1>) -> HighlightProducts {
         let plane = |corners| fitted(&linear([corners]), setup.gradients);
         let ByColumn((length, quadratics)) = self.diffuse_patch(setup, length);
         ByColumn((length, (quadratics, (plane(fixed), plane(self.fp)))))
@@ -225,9 +246,9 @@ impl Products {
 
     /// The polynomials without those that highlights alone need.
     #[inline(never)]
-    fn diffuse_patch(&self, setup: &TriangleSetup<'_>, length: scale::UnitSquare) -> DiffuseProducts {
+    fn diffuse_patch(&self, setup: &TriangleSetup<'_>, length: Quadric<1>) -> DiffuseProducts {
         let pp = Nodes::<6, 1, { FIELD_BITS - 2 }>::new([map_six(self.pp, |square| (above_least(square) >> 8) as i32)], 8);
-        ByColumn((fitted(&length, setup.gradients), (fitted(&pp, setup.gradients), fitted(&quadratic([self.np]), setup.gradients))))
+        ByColumn((length, (fitted(&pp, setup.gradients), fitted(&quadratic([self.np]), setup.gradients))))
     }
 }
 
@@ -348,6 +369,20 @@ impl<const LIGHT: bool, W: Left> AtPixel<Value> for FromProducts<'_, LIGHT, W> {
         let half = half(self.lengths, signed(nf), np, upper(signed(fp), near));
         let light = if LIGHT { np << 3 } else { signed(nf) };
         ((), self.left.of((upper(light, normal), self.lookup.at(upper(half << (COSINE - HALF), normal))), pp))
+    }
+}
+
+/// The walked products, and the colour of the surface beside them.
+impl<S, const LIGHT: bool, W: Left> AtPixel<(Value, S)> for FromProducts<'_, LIGHT, W> {
+    type Common = ();
+    type Values = (CosineAndHighlight, S);
+
+    const BITS: u32 = DIFFUSE;
+
+    #[inline(always)]
+    fn at(&self, (products, colour): (Value, S)) -> ((), (CosineAndHighlight, S)) {
+        let ((), light) = self.at(products);
+        ((), (light, colour))
     }
 }
 

@@ -70,7 +70,10 @@ impl Loops for Phong {
         band: &mut Band<'_, C>,
     ) -> Option<u32> {
         let mut cosines = None;
-        if !C::GRAY && !shading.lighting.is_constant() {
+        if !shading.lighting.is_constant() {
+            if C::GRAY || !near::suits(setup, shading, tables.reflectance) {
+                return None;
+            }
             match near::draw(setup, shading, tables, band)? {
                 Drawn::Pixels(pixels) => return Some(pixels),
                 Drawn::Constantly(corners) => cosines = Some(corners),

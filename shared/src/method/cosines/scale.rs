@@ -34,6 +34,9 @@ const ONE: i32 = 1 << COSINE;
 /// [`crate::setup::word_sized`].
 const HAVERSINE_BITS: u32 = HAVERSINE - 1;
 
+/// The largest exponent of a highlight that loops draw: [`crate::math::rsqrt::HALF_ERROR`] makes an error of 0.1 of 1/255 there.
+pub(super) const STEEPEST: u16 = 256;
+
 /// The squared lengths of normals of unit length at six nodes.
 pub(super) type UnitSquare = Nodes<6, 1, HAVERSINE_BITS>;
 
@@ -123,6 +126,14 @@ impl Lengths {
     }
 }
 
+impl Lengths {
+    /// [`Self::square`] in a function of its own.
+    #[inline(never)]
+    pub(super) fn square_apart(&self, setup: &TriangleSetup<'_>) -> Quadric<1> {
+        self.square(setup)
+    }
+}
+
 /// The field of exact squares.
 #[inline(never)]
 fn exact_square(setup: &TriangleSetup<'_>) -> Quadric<1> {
@@ -159,12 +170,16 @@ fn by(a: i32, b: i32) -> i32 {
 fn scaled_square(setup: &TriangleSetup<'_>, [l, m, n]: [i32; 3], is_steep: bool) -> Quadric<1> {
     let [a, b, c, ab, bc, ca] = map_six(squares(setup, is_steep), |square| square << (COSINE - FIELD_NODE));
     // |l M|² = l² + l² (M² - 1). Half-way the square is |(l M + m N) / 2|², and twice M·N is 4 |(M + N) / 2|² - M² - N².
-    let corner = |l: i32, a: i32| by(l, l) + by(by(l, l), a);
     let middle = |l: i32, m: i32, a: i32, b: i32, ab: i32| {
         let half = (l >> 1) + (m >> 1);
-        by(half, half) + ((by(by(l, l), a) + by(by(m, m), b)) >> 2) - by(by(l, m), ((a + b) >> 2) - ab)
+        by(half, half) - by(by(l, m), ((a + b) >> 2) - ab)
     };
-    let squares = [corner(l, a), corner(m, b), corner(n, c), middle(l, m, a, b, ab), middle(m, n, b, c, bc), middle(n, l, c, a, ca)];
+    let mut squares = [by(l, l), by(m, m), by(n, n), middle(l, m, a, b, ab), middle(m, n, b, c, bc), middle(n, l, c, a, ca)];
+    if is_steep {
+        let [x, y, z, xy, yz, zx] = squares;
+        let (a, b, c) = (by(x, a), by(y, b), by(z, c));
+        squares = [x + a, y + b, z + c, xy + ((a + b) >> 2), yz + ((b + c) >> 2), zx + ((c + a) >> 2)];
+    }
     // Rounded to the bits of a node. The sum wraps where a square is 1, and is a word again without the least.
     let node = |square: i32| (((square as u32) << 2).wrapping_sub(LEAST).wrapping_add(1 << (31 - FIELD_NODE)) >> (32 - FIELD_NODE)) as i32;
     fit(setup, map_six(squares, node))

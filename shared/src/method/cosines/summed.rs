@@ -27,10 +27,9 @@ use crate::{
     method::{
         Shading, TriangleSetup,
         cosines::{
-            duff::STEEPEST,
             lit::{FromValues, LitShader},
             quotient::{HalfReciprocal, LEVEL, NODE, PIXEL, Quotient, RANGE, colour, is_plane, numerator, plane},
-            scale::Lengths,
+            scale::{Lengths, STEEPEST},
         },
         largest,
     },
