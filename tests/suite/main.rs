@@ -43,6 +43,7 @@ mod perspective;
 mod raster;
 mod scanlines;
 mod scenes;
+mod settings;
 mod size;
 mod skips;
 mod split;
