@@ -1,9 +1,9 @@
 //! The method `auto`: for each triangle the cheapest way that is guaranteed to stay within an error budget.
 //!
 //! A triangle is drawn in one colour, by linear or quadratic interpolation of levels, or by quadratic interpolation of cosines, if [`ErrorBounds`]
-//! allow it, and otherwise by Phong shading. Under near lights, for a near viewer, and under more than two lights the choice is between one colour, linear
-//! interpolation and Phong shading; lights with a cone leave Phong shading alone. The choice follows from constants of the mesh and from the light at the
-//! corners, in integers, so it is the same on every machine.
+//! allow it, and otherwise by Phong shading. Under near lights, for a near viewer, and under more than two lights the choice is between one colour,
+//! linear interpolation and Phong shading. Lights with a cone leave Phong shading alone. The choice follows from constants of the mesh and from the
+//! light at the corners, in integers, so it is the same on every machine.
 //!
 //! Bounds tell by how much linear interpolation may be too dark, and by how much too bright. If one of the two exceeds the budget but their mean does
 //! not, all levels of the triangle are raised or lowered until both are within the budget.

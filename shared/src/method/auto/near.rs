@@ -1,22 +1,24 @@
 //! Bounds of linear interpolation under near lights and for a near viewer, where directions change over a triangle as normals do.
 //!
-//! Light at a point is made of cosines between unit vectors: N over its length, L towards the light, H half-way between L and the viewer. The error of
-//! linear interpolation follows from how much each of them turns over the triangle.
+//! Light at a point is made of cosines between unit vectors: N over its length, L towards the light, H half-way between L and the viewer. The error
+//! of linear interpolation follows from how much each of them turns over the triangle.
 //!
-//! - N and the vectors towards lights and viewer are linear over the triangle before they are made units. Along an edge a vector v turns by at most
-//!   s = |change of v| / least |v|. For normals this is e/ρ, as in [`super::error_bound`]; for lights it is the longest edge over the least distance.
-//! - The second derivative of such a unit vector u, times a unit vector w, is at most 1.155 s²: with u' across and r' along u it is
-//!   |2 r' u'·w| + |u'|² |u·w|, where |u'|² + r'² = s² and |u'·w| is at most |u'| sin of their angle; the largest eigenvalue is 1.1548. So the second derivative of
-//!   N·L is at most 1.155 (s of N + s of L)².
-//! - H is L plus the direction to the viewer, k long, made a unit. If k is at least the root of 2, as where that angle is at most 90 degrees, H turns by
-//!   at most 1.1 (s of L + s of the viewer) in the sense of this bound.
-//! - The second derivative of (N·H)^n is at most n D² (1.155 c + 2 (n - 1)(1 - c)) c^(n - 2) with D the sum of the turns of N and H: at most 1.335 n D²,
-//!   and less by [`FAR`] if N·H stays below a bound.
-//! - A function whose second derivative along edges is at most M differs from linear interpolation by at most 2/9 M: of Taylor's remainders to the corners,
-//!   weighted by barycentric coordinates b, the largest sum of b (1 - b)² / 2 is 2/9.
-//! - A range R leaves (1 - d²/R²)² at the distance d. With q = d²/R² at the farthest corner, this counts as if the light turned 1 + 3.5 q + 1.86 √q times as
-//!   far: by the first derivative, at most 4 q (1 + s) s, and the second, at most (8 q² (1 + s)² + 4 q) s², where s is at most 1/3.
-//! - Where N·L changes its sign, it changes by at most the turn; clamped light is too bright by at most a quarter of that.
+//! - N and the vectors towards lights and viewer are linear over the triangle before they are made units. Along an edge such a vector v turns by at
+//!   most s = |change of v| / least |v|. For normals this is e/ρ, as in [`super::error_bound`]. For lights it is the longest edge over the least
+//!   distance.
+//! - Let u be such a unit vector, u' its derivative, r' the relative derivative of its length, and w another unit vector. The second derivative of u,
+//!   times w, is at most |2 r' u'·w| + |u'|² |u·w|, where |u'|² + r'² = s², and |u'·w| is at most |u'| times the sine between u and w. This is at
+//!   most 1.155 s², by the largest eigenvalue. So the second derivative of N·L is at most 1.155 (s of N + s of L)².
+//! - H is the sum of L and the direction to the viewer, made a unit. If these two are at most 90 degrees apart, the sum is at least √2 long. The same
+//!   bound then holds for N·H, with 1.1 (s of L + s of the viewer) in place of s of L.
+//! - Let D be the sum of the turns of N and H. The second derivative of (N·H)^n is at most n D² (1.155 c + 2 (n - 1)(1 - c)) c^(n - 2) at N·H = c.
+//!   This is at most 1.335 n D², and less by [`FAR`] if N·H stays below a bound.
+//! - A function whose second derivative along edges is at most M differs from linear interpolation by at most 2/9 M. It follows from Taylor's
+//!   remainders towards the corners, weighted by barycentric coordinates b: the largest sum of b (1 - b)² / 2 is 2/9.
+//! - A range R leaves (1 - d²/R²)² of a light at the distance d. Let q be d²/R² at the farthest corner. The first derivative of this is at most
+//!   4 q (1 + s) s, the second (8 q² (1 + s)² + 4 q) s², where s is at most 1/3. So it counts as if the light turned 1 + 3.5 q + 1.86 √q times as
+//!   far.
+//! - Where N·L changes its sign, it changes by at most the turn. Interpolated light is then too bright by at most a quarter of that.
 
 use crate::{
     format::COSINE,
@@ -41,8 +43,8 @@ use super::way::{Choice, is_clamped, linear_raise};
 const DIFFUSE: u32 = share(2.0 / 9.0 * 1.155);
 /// 2/9, Q16.
 const CORNERS: u32 = share(2.0 / 9.0);
-/// The bound of the second derivative of a highlight of exponent n, over n and the squared turn, where 1 - N·H is at least k/2 over n - 2; Q16. It is the largest
-/// value of (1.155 + 2.25 y) / e^y from y = k/2 on, for n from 10.
+/// The bound of the second derivative of a highlight of exponent n, divided by n and the squared turn; Q16. Entry number k is for 1 - N·H of at least
+/// k/2 over n - 2. It is the largest value of (1.155 + 2.25 y) / e^y from y = k/2 on. Domain: n from 10 on.
 const FAR: [u32; 17] = [
     share(1.384),
     share(1.384),
@@ -75,7 +77,7 @@ pub(super) fn choose(setup: &TriangleSetup<'_>, shading: &Shading<'_>) -> Option
     }
     let curvature = Curvature::of(setup.triangle)?;
     let normals = curvature.turn(setup.triangle);
-    // A light that turns nowhere: most triangles that bend too much end here.
+    // Most triangles that bend too much end here.
     if normals > MOST {
         return None;
     }
@@ -135,8 +137,8 @@ pub(super) fn choose(setup: &TriangleSetup<'_>, shading: &Shading<'_>) -> Option
     (interval.half() <= budget).then(|| linear_raise(setup, interval, budget, || range).map(Choice::Linear)).flatten()
 }
 
-/// A bound of the error of the highlight of `source`, as a part of a whole one, Q16. The turns are those of normals, of the light and of the viewer, Q0.16; `half` is the largest N·H at
-/// the corners, Q1.15. `None` where L and the direction to the viewer may be more than 90 degrees apart.
+/// A bound of the error of the highlight of `source`, as a part of a whole one, Q16. The turns are those of normals, of the light and of the viewer,
+/// Q0.16, and `half` is the largest N·H at the corners, Q1.15. `None` where L and the direction to the viewer may be more than 90 degrees apart.
 #[inline(never)]
 fn highlight(
     setup: &TriangleSetup<'_>,
