@@ -51,7 +51,7 @@ fn steep_highlights_take_few_instructions_more() {
     }
 }
 
-/// Under a near light `auto` interpolates where that is exact enough. Once it took 35 times as many instructions on a low-poly building as `gouraud`.
+/// Under a near light `auto` interpolates where that is exact enough. Once it took 19 times as many instructions on a low-poly building as `gouraud`.
 #[test]
 fn near_lights_leave_auto_a_choice() {
     for (name, most) in [("cottage", 0.7), ("lighthouse", 0.8), ("sailboat", 0.8)] {

@@ -203,7 +203,8 @@ fn longest_edge([a, b, c]: [&Vertex; 3]) -> u32 {
     square(a, b).max(square(b, c)).max(square(c, a))
 }
 
-/// The turn of the direction to `near`, Q7.25, over a triangle whose longest edge has this square, Q0.16; `None` if it is not small.
+/// The turn of the direction to `near`, Q7.25, over a triangle; it is Q0.16, and at most about 1/3. `edge` is the square of the longest edge, Q4.28.
+/// `None` if that edge is more than a quarter of the way.
 fn turn_towards(near: [i32; 3], [a, ..]: [&Vertex; 3], edge: u32) -> Option<u32> {
     // As edges, with 14 fraction bits. Shifted down, a distance is off by less than a unit of them.
     let way = map(sub(near, point(a.position)), |c| c >> 11);
