@@ -91,6 +91,8 @@ pub(crate) const COLOURS: bool = Feature::Colours.is_on();
 pub(crate) const LIGHTS: bool = Feature::Lights.is_on();
 pub(crate) const LIGHT_SHAPES: bool = Feature::LightShapes.is_on();
 pub(crate) const NEAR_LIGHTS: bool = Feature::NearLights.is_on();
+/// Loops that add lights to a sum: several lights, or near lights of any kind.
+pub(crate) const SUMS_LIGHTS: bool = LIGHTS || NEAR_LIGHTS;
 pub(crate) const OBJECTS: bool = Feature::Objects.is_on();
 /// Whether the corners of triangles may have colours.
 pub(crate) const VERTEX_COLOURS: bool = Feature::VertexColours.is_on();

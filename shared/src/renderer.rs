@@ -14,7 +14,7 @@ use crate::{
     placement::{Placements, Placing},
     scene::{Limits, Scene},
     shader::Shader,
-    stream::record::{Camera, Light, Material, PERSPECTIVE, POINT, VIEWER_LOCAL},
+    stream::record::{Camera, Light, Material, PERSPECTIVE, POINT},
 };
 use core::mem;
 use embedded_graphics_core::geometry::Size;
@@ -167,7 +167,7 @@ impl<'a, C: Pixel> Renderer<'a, C> {
     fn fill_tables(&mut self) {
         let Self { settings, colours, ramps, scene, memory: Memory { reflectances, tables, error_bounds, .. }, .. } = self;
         let (method, ColourSettings { dither, gamma, .. }) = (settings.method, colours);
-        let (facts, ambient) = (method.facts(), scene.ambient);
+        let (facts, ambient, is_viewer_near) = (method.facts(), scene.ambient, scene.camera.has_local_viewer());
         let mut lights: heapless::Vec<Light, MAX_LIGHTS> = heapless::Vec::from_slice(scene.lights()).unwrap_or_default();
         if !features::LIGHTS && lights.is_empty() {
             // A black light takes the place of none.
@@ -182,7 +182,7 @@ impl<'a, C: Pixel> Renderer<'a, C> {
                     &material,
                     &lights,
                     (facts.highlight, facts.highlight_levels),
-                    scene.is_coloured(index),
+                    [scene.is_coloured(index), is_viewer_near],
                 );
                 fill_ramps::<C>(ramps, reflectance, *dither, *gamma);
             }
@@ -481,7 +481,7 @@ fn check_scene<'m>(
 ) -> Result<(), RenderError> {
     let Limits { near_lights, perspective, least_exponent: least } = limits(facts, perspective_correct);
     let is_perspective = camera.projection == PERSPECTIVE;
-    if !near_lights && (is_perspective && camera.viewer == VIEWER_LOCAL || lights.iter().any(|light| light.kind == POINT)) {
+    if !near_lights && (camera.has_local_viewer() || lights.iter().any(|light| light.kind == POINT)) {
         return Err(RenderError::Light { shader: facts.name });
     }
     if materials.any(|material| material.exponent < least) {

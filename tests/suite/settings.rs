@@ -1,8 +1,8 @@
 //! No setting of a scene makes a frame several times as dear as its neighbours do: loops draw steep highlights and near lights, too.
 
 use microphong::{
-    format::{ErrorBudget, Length},
-    stream::record::{Light, POINT},
+    format::{ErrorBudget, Gain, Length},
+    stream::record::{DIRECTIONAL, Light, POINT},
 };
 use microphong_sim::{
     bench::{Bench, Processor, board_styles::Program},
@@ -62,4 +62,26 @@ fn near_lights_leave_auto_a_choice() {
         println!("{name} under a near light: phong {phong:.0}, auto {auto:.0}, gouraud {gouraud:.0}");
         assert!(auto < most * phong, "{name}: {auto} of {phong}");
     }
+}
+
+/// Near lights are added one by one. Once two of them, or one beside another light, took almost five times as many instructions as one.
+#[test]
+fn a_near_light_more_costs_about_as_much_as_the_first() {
+    let more = |light: Light| {
+        move |records: &mut Records| {
+            near(records);
+            records.lights.push(light);
+        }
+    };
+    let grey = [Gain::from_num(0.3); 3];
+    let count = |change: &dyn Fn(&mut Records)| counts(Program::PLAIN, &scene("teapot", change), &[Shader::PHONG])[0];
+    let one = count(&near);
+    let directional = count(&more(Light::new(DIRECTIONAL, 0, [-0.6, 0.0, 0.8].map(Length::from_num), grey)));
+    let two = count(&more(Light::new(POINT, 0, [-1, 2, 2].map(Length::from_num), grey)));
+    let local = count(&|records| {
+        near(records);
+        records.header.camera = records.header.camera.with_local_viewer();
+    });
+    println!("one near light {one:.0}, and a directional one {directional:.0}, and a near one {two:.0}, and a local viewer {local:.0}");
+    assert!(directional < 2.0 * one && two < 2.7 * one && local < 2.5 * one);
 }

@@ -121,7 +121,14 @@ impl Walked {
         let is_coloured = |index: usize| stream.meshes.iter().filter(has_colours).any(|mesh| usize::from(mesh.material) == index);
         let highlight = (method.highlight, method.highlight_levels);
         let is_one_channel = |(index, material)| {
-            reflectance.fill(Channels::of::<Fine>(), stream.header.ambient, material, stream.lights, highlight, is_coloured(index));
+            reflectance.fill(
+                Channels::of::<Fine>(),
+                stream.header.ambient,
+                material,
+                stream.lights,
+                highlight,
+                [is_coloured(index), stream.header.camera.has_local_viewer()],
+            );
             !reflectance.three_channels()
         };
         Self(stream.materials.iter().enumerate().map(is_one_channel).collect())

@@ -66,6 +66,12 @@ impl<const CH: usize> Plane<CH> {
         plane
     }
 
+    /// The value at column 0 of the current row, and the derivatives.
+    #[inline(always)]
+    pub(super) fn coefficients(&self) -> [[i32; 3]; CH] {
+        self.0.map(|PlaneRow { c, dx, dy }| [c, dx, dy])
+    }
+
     /// The plane whose values are so many bits further left, or right if the number is negative, modulo 2^32.
     #[inline(always)]
     #[must_use]

@@ -1,7 +1,7 @@
 //! Quadratic fields.
 
 use crate::{
-    interpolate::{Checkerboard, HALF_RANGE, Patch, Walker, each_channel},
+    interpolate::{Checkerboard, HALF_RANGE, Patch, Walker, each_channel, plane::Plane},
     setup::{gradients::Gradients, word_sized::QUADRATIC},
 };
 
@@ -150,6 +150,14 @@ impl<const CH: usize> Quadric<CH> {
 #[inline(never)]
 fn long<const BITS: u32>(gradients: &Gradients, nodes: [i32; 6], extra: u32) -> [i32; 6] {
     if extra == 32 - BITS { gradients.quadratic::<BITS>(nodes, 32 - BITS) } else { gradients.quadratic_any(BITS, nodes, extra) }
+}
+
+/// A plane as a quadratic that does not bend.
+impl<const CH: usize> From<Plane<CH>> for Quadric<CH> {
+    #[inline(always)]
+    fn from(plane: Plane<CH>) -> Self {
+        Self(plane.coefficients().map(|[c, dx, dy]| QuadricRow { c, c_down: dy, c_down2: 0, dx, dx_down: 0, dxx: 0 }))
+    }
 }
 
 impl<const CH: usize> Patch for Quadric<CH> {

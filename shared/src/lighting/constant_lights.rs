@@ -178,7 +178,7 @@ pub struct Sum {
 }
 
 /// Fraction bits of a cosine that is multiplied by a diffuse level.
-pub(super) const FACTOR: u32 = CHANNEL - LEVEL;
+pub(crate) const FACTOR: u32 = CHANNEL - LEVEL;
 /// The diffuse level of [`OneLightRgb`] at cosine 1 is 2 to this power: half of the walked range, so that cosines and their overshoots fit.
 const FULL_BITS: u32 = 7;
 

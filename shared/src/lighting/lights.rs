@@ -10,7 +10,7 @@ use crate::{
         shape::{STRENGTH, Shape},
     },
     math::vector::{add, dot, map, narrow_dot, normalise, sub, wide},
-    stream::record::{Camera, EYE_SPACE, Light, PERSPECTIVE, POINT, SKY, VIEWER_LOCAL},
+    stream::record::{Camera, EYE_SPACE, Light, POINT, SKY},
 };
 use zerocopy::{FromBytes, FromZeros as _, Immutable, IntoBytes, KnownLayout};
 
@@ -108,7 +108,7 @@ impl Lighting {
             (self.sources, self.count) = ([Source::NONE; ROOM], 1);
         }
         self.directional = directions.are_directional.into();
-        let is_local = NEAR_LIGHTS && camera.viewer == VIEWER_LOCAL && camera.projection == PERSPECTIVE;
+        let is_local = NEAR_LIGHTS && camera.has_local_viewer();
         let ([right, up, _], towards_eye) = (model_view.rotation, towards_eye(model_view));
         (self.is_local, self.viewer) = (is_local.into(), if is_local { model_view.eye() } else { towards_eye });
         self.axes = [right, up, towards_eye];

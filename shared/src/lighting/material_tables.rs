@@ -214,7 +214,7 @@ mod tests {
             material,
             &[Light { colour, ..Light::new_zeroed() }],
             (Highlight::Half, false),
-            false,
+            [false; 2],
         );
         reflectance
     }

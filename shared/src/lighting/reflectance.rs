@@ -5,7 +5,7 @@ use crate::{
         product::{product, unsigned_product},
         quotient::long,
     },
-    features::{COLOURS, LIGHT_SHAPES, LIGHTS, SKIPS, VERTEX_COLOURS},
+    features::{COLOURS, LIGHT_SHAPES, LIGHTS, SKIPS, SUMS_LIGHTS, VERTEX_COLOURS},
     format::{BIAS, CHANNEL, COSINE, FULL, Intensity, LEVEL, PIXEL_COSINE, UNIT},
     lighting::{
         albedo::Parts,
@@ -117,6 +117,18 @@ impl Factors {
 
     /// Adds the diffuse light at a cosine, Q1.15, to levels.
     #[inline]
+    pub(crate) fn add_diffuse_at(&self, levels: &mut [i32; 3], cosine: i32) {
+        *levels = self.add_at(*levels, cosine);
+    }
+
+    /// Adds a highlight, unsigned Q0.16, to levels.
+    #[inline]
+    pub(crate) fn add_highlight_at(&self, levels: &mut [i32; 3], highlight: u32) {
+        *levels = zip(*levels, self.specular, |level, factor| level.wrapping_add(factor.wrapping_mul(highlight as i32)));
+    }
+
+    /// Adds the diffuse light at a cosine, Q1.15, to levels.
+    #[inline]
     pub(super) fn add_at(&self, [r, g, b]: [i32; 3], cosine: i32) -> [i32; 3] {
         let ([dr, dg, db], level) = (self.diffuse, |level: i32, gain: i32| level.wrapping_add(gain.wrapping_mul(cosine)));
         [level(r, dr), level(g, dg), level(b, db)]
@@ -189,7 +201,7 @@ impl Reflectance {
 
     /// Computes the reflectance of `material` under `lights`, for a method with these highlights and for a pixel format with these `channels`.
     /// If the method allows it, and there is one channel and one light, the table of highlights `holds_levels` instead of fractions. A material
-    /// `is_coloured` if a mesh has it whose corners have colours.
+    /// `is_coloured` if a mesh has it whose corners have colours. The last flag tells whether the viewer is near.
     pub fn fill(
         &mut self,
         channels: Channels,
@@ -197,14 +209,20 @@ impl Reflectance {
         material: &Material,
         lights: &[Light],
         (highlight, holds_levels): (Highlight, bool),
-        is_coloured: bool,
+        [is_coloured, is_viewer_near]: [bool; 2],
     ) {
         let is_coloured = VERTEX_COLOURS && is_coloured;
         let Channels { depth, is_gray, is_coarse, .. } = channels;
         let LightTerms { colours: terms, base, are_one_channel } = LightTerms::new(&channels, ambient, material, lights);
         let is_plain = !LIGHT_SHAPES || !lights.iter().any(Light::has_shape);
-        // Loops for several lights have three channels, and in one channel the loops for one light have no room for the brightest levels.
-        let are_several = LIGHTS && lights.len() > 1 && lights.iter().all(|light| light.kind != POINT);
+        // There are loops for one light: a directional one, or a near one without a cone on a surface of one colour for a far viewer.
+        let is_one = match lights {
+            [light] if light.kind == POINT => light.axis == [0; 3] && !is_coloured && !is_viewer_near,
+            [_] => is_plain,
+            _ => false,
+        };
+        // Loops for other lights have three channels, and in one channel the loops for one light have no room for the brightest levels.
+        let are_several = SUMS_LIGHTS && !is_one && !lights.is_empty();
         let is_bright = || terms.iter().map(|&term| u32::from(level(largest(term), 8))).sum::<u32>() + (1 << LEVEL) >= LARGEST;
         let one_channel = !COLOURS || are_one_channel && (is_gray || !(is_coloured || holds_levels && (are_several || is_bright())));
         self.depth = depth;
@@ -230,10 +248,8 @@ impl Reflectance {
         self.has_ramp = u8::from(!is_coloured && (one_channel || is_coarse && lights.len() == 1 && within));
         let most = (1..3).fold(0, |most, k| if diffuse[k] > diffuse[most] { k } else { most });
         self.ramp = [ambient[most], diffuse[most].into()];
-        // There are loops for one near light that has a range.
-        let is_ranged = |light: &Light| light.kind == POINT && light.axis == [0; 3];
-        let is_one = lights.len() == 1 && (is_plain || lights.iter().all(is_ranged));
-        let are_two = lights.len() == 2 && !one_channel && is_plain && !is_coloured;
+        let are_directional = lights.iter().all(|light| light.kind != POINT);
+        let are_two = lights.len() == 2 && !one_channel && is_plain && are_directional && !is_coloured;
         // There are no loops for colours of corners in greys.
         let has_loops = holds_levels && !(is_coloured && is_gray);
         self.lights = match has_loops && fits {
@@ -323,8 +339,8 @@ impl Reflectance {
         self.lights() == 1 && !self.three_channels()
     }
 
-    /// Number of lights, if it is one or two, the method has loops for them, and their levels fit their formats; [`SUMMED`] for several other lights
-    /// without a position; otherwise 0.
+    /// Number of lights, if it is one or two, the method has loops for them, and their levels fit their formats; [`SUMMED`] for other lights; otherwise
+    /// 0.
     #[inline]
     #[must_use]
     pub fn lights(&self) -> u8 {
@@ -349,7 +365,7 @@ impl Reflectance {
     #[inline]
     #[must_use]
     pub(crate) fn sums_lights(&self) -> bool {
-        LIGHTS && COLOURS && self.lights == SUMMED
+        SUMS_LIGHTS && COLOURS && self.lights == SUMMED
     }
 
     /// [`Self::highlight_threshold`] of a material without highlights, greater than every N·H.

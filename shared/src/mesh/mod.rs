@@ -8,7 +8,7 @@ use crate::{
     features::COLOURED,
     geometry::bin::{TriangleKey, Walk},
     lighting::material_tables::MaterialTables,
-    method::{DrawTriangle, General, Loops, Middles, Shading, Style, TriangleSetup, needs_general, tiles},
+    method::{DrawTriangle, General, Loops, Middles, Shading, Style, TriangleSetup, cosines::near, needs_general, tiles},
     pixel::{Pixel, gamma::Gamma},
     raster::{
         band::Band,
@@ -57,7 +57,7 @@ impl<C: Pixel> Drawing<'_, C> {
             lights: if lighting.is_constant() { reflectance.lights() } else { 0 },
             is_near: !(lighting.is_constant() || C::GRAY && self.pass.stage.is_coloured()),
             // Boards with displays of greys have little flash: no loops there.
-            one_near: !C::GRAY && lighting.has_one_near() && reflectance.lights() == 1,
+            near_loops: !C::GRAY && near::have_loops(lighting, reflectance),
             by_canvas: !self.colourist().suits_loops(),
             perspective: *perspective,
             is_coloured: self.pass.stage.is_coloured(),

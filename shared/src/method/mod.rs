@@ -129,8 +129,8 @@ pub(crate) struct Style {
     pub(crate) lights: u8,
     /// Whether a light or the viewer is near, and the corners have no colours in greys.
     pub(crate) is_near: bool,
-    /// Whether there is one light, and either it or the viewer is near, and its levels fit these formats.
-    pub(crate) one_near: bool,
+    /// Whether a light or the viewer is near, and methods with loops for that have loops for these lights.
+    pub(crate) near_loops: bool,
     /// Whether only a canvas can make the colours: by the curve of a display on three channels that are not light.
     pub(crate) by_canvas: bool,
     /// Whether light is interpolated in perspective.

@@ -50,7 +50,7 @@ use crate::{
     pixel::Channels,
     stream::{
         Stream, is_gain,
-        record::{Camera, LIGHT_TRACK, Light, Material, Mesh, OBJECT_TRACK, OWN_MATERIALS, PERSPECTIVE, POINT, Track, VIEWER_LOCAL},
+        record::{Camera, LIGHT_TRACK, Light, Material, Mesh, OBJECT_TRACK, OWN_MATERIALS, PERSPECTIVE, POINT, Track},
     },
 };
 use core::ops::Range;
@@ -531,14 +531,17 @@ impl<'a> Scene<'a> {
     /// Returns [`SceneError::Feature`] if the change needs a cargo feature of this crate that is turned off.
     pub fn set_camera(&mut self, camera: Camera) -> Result<(), SceneError> {
         in_range(camera.fault())?;
-        require(Feature::NearLights, camera.viewer == VIEWER_LOCAL && camera.projection == PERSPECTIVE)?;
-        if !self.limits.near_lights && camera.viewer == VIEWER_LOCAL && camera.projection == PERSPECTIVE {
+        require(Feature::NearLights, camera.has_local_viewer())?;
+        if !self.limits.near_lights && camera.has_local_viewer() {
             return Err(SceneError::Light);
         }
         if !self.limits.perspective && camera.projection == PERSPECTIVE {
             return Err(SceneError::Perspective);
         }
         if self.camera != camera {
+            if self.camera.has_local_viewer() != camera.has_local_viewer() {
+                self.set_stale();
+            }
             self.camera = camera;
             self.place = self.place_of(self.place);
             self.set_view_changed();

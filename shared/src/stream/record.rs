@@ -191,6 +191,12 @@ impl Camera {
         Self { viewer: VIEWER_LOCAL, ..self }
     }
 
+    /// Whether the viewer is local. Under an orthographic camera it is infinitely far.
+    #[must_use]
+    pub fn has_local_viewer(&self) -> bool {
+        self.viewer == VIEWER_LOCAL && self.projection == PERSPECTIVE
+    }
+
     /// Makes the camera orbit about `axis`, a unit vector in object space, once in `period` frames. A period of 0 makes it stand still.
     #[must_use]
     pub fn orbiting(self, axis: [Rotation; 3], period: u16) -> Self {

@@ -581,7 +581,7 @@ mod tests {
         let bright = [2 << UNIT; 3];
         let material = Material { ambient: bright, diffuse: bright, specular: bright, exponent: 1024 };
         let light = Light { colour: bright, ..Light::new_zeroed() };
-        reflectance.fill(Channels::of::<Gray8>(), bright, &material, &[light; 2], (Highlight::Half, false), false);
+        reflectance.fill(Channels::of::<Gray8>(), bright, &material, &[light; 2], (Highlight::Half, false), [false; 2]);
         let reflectance = LitMaterial::new(&reflectance, None);
         let bounds = ErrorBounds::new(reflectance, 1024, 2);
         let one = (1 << COSINE) + (1 << (COSINE - UNIT));
@@ -613,7 +613,14 @@ mod tests {
             let material = Material { ambient: [0; 3], diffuse: gain(shares[0]), specular: gain(shares[1]), exponent };
             let mut reflectance = Reflectance::EMPTY;
             let white = Light { colour: [1 << UNIT; 3], ..Light::new_zeroed() };
-            reflectance.fill(Channels::of::<Gray8>(), [1 << UNIT; 3], &material, &[white; 2][..lights], (Highlight::Half, false), false);
+            reflectance.fill(
+                Channels::of::<Gray8>(),
+                [1 << UNIT; 3],
+                &material,
+                &[white; 2][..lights],
+                (Highlight::Half, false),
+                [false; 2],
+            );
             let reflectance = LitMaterial::new(&reflectance, None);
             let bounds = ErrorBounds::new(reflectance, exponent, lights);
             let (facing, spread) = (random.direction(), 0.6f64.powf(1.0 + 4.0 * random.next().abs()));

@@ -115,7 +115,7 @@ pub(crate) fn draw<C: Pixel>(
     // Greys have one channel, in which nothing is summed.
     if LIGHTS && !C::GRAY && reflectance.lights() > 1 {
         return if reflectance.sums_lights() {
-            summed::draw(setup, shading, &lengths, tables, band)
+            summed::draw::<C, false>(setup, shading, &lengths, tables, band)
         } else {
             quotient::draw_two(setup, &lengths, tables, band)
         };

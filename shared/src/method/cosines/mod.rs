@@ -3,7 +3,7 @@
 #[doc(hidden)]
 pub mod duff;
 mod lit;
-mod near;
+pub(crate) mod near;
 #[doc(hidden)]
 pub mod phong;
 mod quotient;

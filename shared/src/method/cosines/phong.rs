@@ -2,12 +2,13 @@
 //!
 //! Normals, lights and viewer are linear over the screen. Every dot product of them is therefore linear or exactly quadratic and can be walked. Only
 //! the roots that normalise are taken at each pixel. One constant light is drawn by [`crate::method::cosines::duff`], one light where it or the viewer
-//! is near by `near`.
+//! is near by `near`, and other near lights by `summed`.
 //!
 //! Cost: one constant light as `duff`; otherwise 6 additions and 2 roots, and 6 additions and 2 roots more for each light. Error: the tables' error,
 //! mainly [`crate::math::highlight_lut::NEAREST_ERROR`] of the highlight. Domain: any lights and viewer.
 
 use crate::{
+    features::SUMS_LIGHTS,
     lighting::{
         lights::{Source, Viewer, point},
         material_tables::MaterialTables,
@@ -23,9 +24,11 @@ use crate::{
         cosines::{
             duff::{self, Duff},
             near::{self, Drawn},
+            scale::Lengths,
+            summed,
         },
         lighting_model::LightingModel,
-        node::field_product,
+        node::{field_product, is_steep},
         products::{quadratic, signed},
     },
     pixel::Pixel,
@@ -73,6 +76,9 @@ impl Loops for Phong {
         if !shading.lighting.is_constant() {
             if C::GRAY || !near::suits(setup, shading, tables.reflectance) {
                 return None;
+            }
+            if SUMS_LIGHTS && (tables.reflectance.lights() != 1 || setup.albedos().is_some()) {
+                return summed::draw::<C, true>(setup, shading, &Lengths::of(setup, is_steep(shading.exponent))?, tables, band);
             }
             match near::draw(setup, shading, tables, band)? {
                 Drawn::Pixels(pixels) => return Some(pixels),

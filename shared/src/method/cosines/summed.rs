@@ -1,7 +1,8 @@
-//! Loops under any number of constant lights. The diffuse light of most is one sum, see [`crate::lighting::summed`]. Lights that end on a triangle are
-//! added one by one at each pixel, and so are highlights.
+//! Loops under any lights. The diffuse light of most constant lights is one sum, see [`crate::lighting::summed`]. Lights that end on a triangle are added
+//! one by one at each pixel, and so are highlights and near lights.
 //!
-//! Cost: that of three planes and a root for the sum; five products for each light that ends, and for each highlight the same and its table.
+//! Cost: that of three planes and a root for the sum; five products for each light that ends, and for each highlight the same and its table; for near
+//! lights see [`super::near::term`].
 
 use crate::{
     arch::product::{product, upper},
@@ -16,18 +17,24 @@ use crate::{
     lighting::{
         albedo::{Albedo, SHARE},
         constant_lights::{DiffuseOnly, LitColours, SUMMED, Summed, SummedRgb, SurfaceColour, cosine},
+        lights::Viewer,
         material_tables::MaterialTables,
-        summed::{Sides, part},
+        summed::{Sides, at_vertex, part},
     },
     math::{
         highlight_lookup::QuotientLookup,
+        highlight_lut::CosineLookup,
         rsqrt::HalfRsqrt,
-        vector::{map, zip},
+        vector::{map, wide, zip},
     },
     method::{
         Shading, TriangleSetup,
         cosines::{
             lit::{FromValues, LitShader},
+            near::{
+                self,
+                term::{NearTerm, NearTerms},
+            },
             quotient::{HalfReciprocal, LEVEL, NODE, PIXEL, Quotient, RANGE, colour, is_plane, numerator, plane},
             scale::{Lengths, STEEPEST},
         },
@@ -92,10 +99,12 @@ struct SummedLights {
 }
 
 impl SummedLights {
-    /// Adds the lights on the triangle `setup`. They are not returned, because a copy of all terms takes longer than most of what is computed here.
+    /// Adds the constant lights on the triangle `setup`, whose vertices hold `corners`. They are not returned, because a copy of all terms takes longer
+    /// than most of what is computed here.
     #[inline(never)]
     fn add<C: Pixel>(
         &mut self,
+        [a, b, c]: [[i32; 4]; 3],
         setup: &TriangleSetup<'_>,
         shading: &Shading<'_>,
         lengths: &Lengths,
@@ -103,12 +112,13 @@ impl SummedLights {
         tables: MaterialTables<'_, C>,
     ) {
         let (material, full) = (tables.reflectance, tables.summed_rgb().diffuse());
-        let [a, b, c] = setup.corners.map(|corner| corner.light);
         let sides = Sides::of_triangle([a[3], b[3], c[3]], setup.triangle.min_normal_length);
         self.corners = [[a[0], b[0], c[0]], [a[1], b[1], c[1]], [a[2], b[2], c[2]]];
         if VERTEX_COLOURS && setup.albedos().is_some() {
             self.ambient = material.pure_ambient();
         }
+        // Highlights that a near viewer sees are near terms.
+        let is_far = matches!(shading.lighting.viewer(), Viewer::Infinite(_));
         for (light, source) in shading.lighting.sources().iter().enumerate() {
             let Some(&[towards, half]) = source.directional() else { continue };
             let is_dark = sides.is_dark(light) && setup.leaves_out_light(material, &[0; 3]);
@@ -121,7 +131,7 @@ impl SummedLights {
                 }
                 Term::add(&mut self.ending, plane(setup, full, lengths, &towards), gains);
             }
-            let mut has_highlight = !source.is_sky() && sides.may_have_highlight(light);
+            let mut has_highlight = is_far && !source.is_sky() && sides.may_have_highlight(light);
             if has_highlight {
                 let half = setup.corner_cosines(half);
                 has_highlight = !setup.leaves_out_highlight(material, &half);
@@ -138,18 +148,21 @@ impl SummedLights {
 
     /// Puts these lights on a surface of one colour.
     #[inline(never)]
-    fn paint(&mut self, albedo: Albedo) {
+    fn paint(&mut self, near: Option<&mut NearTerms>, albedo: Albedo) {
         let reflected = |level: i32, share: i32| ((product(level, share) + (1 << (SHARE - 1))) >> SHARE) as i32;
         self.corners = zip(self.corners, albedo.shares(), |channel, share| map(channel, |level| reflected(level, share)));
         for term in &mut self.ending {
             term.factors = zip(term.factors, albedo.shares(), reflected);
         }
+        for term in near.into_iter().flatten() {
+            term.paint(|gains| zip(gains, albedo.shares(), reflected));
+        }
     }
 }
 
-/// Draws `setup`. `None` if it has a highlight that is too steep.
+/// Draws `setup`. `NEAR` tells whether a light or the viewer is near. `None` if a highlight or a near light is too steep, or too near.
 #[inline(never)]
-pub(super) fn draw<C: Pixel>(
+pub(super) fn draw<C: Pixel, const NEAR: bool>(
     setup: &TriangleSetup<'_>,
     shading: &Shading<'_>,
     lengths: &Lengths,
@@ -159,11 +172,22 @@ pub(super) fn draw<C: Pixel>(
     let (lookup, mut colours) = (QuotientLookup::new(tables.reflectance.table()?), tables.summed_rgb());
     let one_colour = if setup.has_texture() { None } else { setup.albedos().and_then(Albedo::one) };
     let mut lights = SummedLights::default();
+    let mut near = NearTerms::new();
     let ambient;
-    lights.add(setup, shading, lengths, lookup, tables);
+    lights.add(
+        if NEAR { at_corners(setup, shading) } else { setup.corners.map(|corner| corner.light) },
+        setup,
+        shading,
+        lengths,
+        lookup,
+        tables,
+    );
+    if NEAR {
+        near::term::add(&mut near, setup, shading)?;
+    }
     if VERTEX_COLOURS && let Some(albedo) = one_colour {
         ambient = tables.painted_sums(albedo);
-        lights.paint(albedo);
+        lights.paint(NEAR.then_some(&mut near), albedo);
         colours = colours.in_ambient(&ambient);
     }
     let lights = &lights;
@@ -174,18 +198,26 @@ pub(super) fn draw<C: Pixel>(
     setup.count(band.top, &mut band.counts.without_highlight, without_highlight);
     setup.count(band.top, &mut band.counts.without_light, without_light);
     let patch = || (sums(setup, lengths, &lights.corners), lengths.square(setup));
-    let shader = OneByOne { colours, lookup, lengths: HalfRsqrt::get(), lights, row: setup.gradients.row() };
-    if setup.has_texture() {
+    let by_cosine = tables.reflectance.table()?.by_cosine();
+    let shader =
+        OneByOne::<C, NEAR> { colours, lookup, by_cosine, lengths: HalfRsqrt::get(), lights, near: &near, row: setup.gradients.row() };
+    if !NEAR && setup.has_texture() {
         let texels = setup.texels()?;
         return Some(setup.fill(|| (Column, (texels, ByColumn(patch()))), shader, band));
     }
     if VERTEX_COLOURS && let (Some(albedos), None) = (setup.albedos(), one_colour) {
         return is_plane(setup, albedos).then(|| setup.fill(|| (Column, ByColumn((colour(setup, albedos), patch()))), shader, band));
     }
-    if lights.ending.is_empty() && lights.highlights.is_empty() {
+    if lights.ending.is_empty() && lights.highlights.is_empty() && (!NEAR || near.is_empty()) {
         return Some(setup.fill(patch, LitShader::of::<Summed>(colours, Quotient(HalfRsqrt::get())), band));
     }
     Some(setup.fill(|| (Column, ByColumn(patch())), shader, band))
+}
+
+/// The sums at the corners where a light or the viewer is near, so that vertices hold levels, or nothing.
+#[inline(never)]
+fn at_corners(setup: &TriangleSetup<'_>, shading: &Shading<'_>) -> [[i32; 4]; 3] {
+    map(setup.vertices(), |vertex| at_vertex(&shading.reflectance, shading.lighting.sources(), wide(vertex.normal)))
 }
 
 /// The numerators of sums of diffuse light.
@@ -212,37 +244,48 @@ type Value = (i32, ([u32; 3], [u32; 1]));
 
 /// Adds lights one by one to the sums. Their numerators stand in memory, since there may be any number; they are evaluated at the column of a pixel.
 #[derive(Clone, Copy)]
-struct OneByOne<'a, C> {
+struct OneByOne<'a, C, const NEAR: bool> {
     colours: SummedRgb<'a, C>,
     lookup: QuotientLookup<'a>,
+    by_cosine: CosineLookup<'a>,
     lengths: &'a HalfRsqrt,
     lights: &'a SummedLights,
+    near: &'a [NearTerm],
     /// The row on which the numerators stand before the first row is drawn.
     row: i32,
 }
 
-impl<C> OneByOne<'_, C> {
+impl<C, const NEAR: bool> OneByOne<'_, C, NEAR> {
     #[inline(always)]
     fn jump(&self, rows: i32) {
         self.lights.ending.iter().for_each(|term| term.jump(rows));
         self.lights.highlights.iter().for_each(|term| term.jump(rows));
+        if NEAR {
+            self.near.iter().for_each(|term| term.jump(rows));
+        }
     }
 }
 
-impl<C: Pixel> OneByOne<'_, C> {
-    /// The levels of ambient and diffuse light at a pixel.
+impl<C: Pixel, const NEAR: bool> OneByOne<'_, C, NEAR> {
+    /// The levels of ambient and diffuse light at a pixel, and the highlights of near lights.
     #[inline(always)]
-    fn diffuse(&self, column: i32, sums: [u32; 3], half_reciprocal: &HalfReciprocal) -> [i32; 3] {
+    fn diffuse(&self, column: i32, sums: [u32; 3], half_reciprocal: &HalfReciprocal) -> [[i32; 3]; 2] {
         let levels = self.colours.levels(Summed::from_values(half_reciprocal, 0, sums));
-        self.lights.ending.iter().fold(levels, |levels, term| {
+        let levels = self.lights.ending.iter().fold(levels, |levels, term| {
             let DiffuseOnly(level) = DiffuseOnly::from_values(half_reciprocal, 0, term.at(column));
             term.added(levels, cosine(PIXEL, level))
-        })
+        });
+        let mut light = [levels, [0; 3]];
+        if NEAR {
+            self.near.iter().for_each(|term| term.add_at(column, half_reciprocal.0, (self.lengths, self.by_cosine), &mut light));
+        }
+        light
     }
 
     /// These levels with the highlights at a pixel.
     #[inline(always)]
-    fn with_highlights(&self, column: i32, levels: [i32; 3], half_reciprocal: &HalfReciprocal) -> [i32; 3] {
+    fn with_highlights(&self, column: i32, levels: [i32; 3], near: [i32; 3], half_reciprocal: &HalfReciprocal) -> [i32; 3] {
+        let levels = if NEAR { zip(levels, near, i32::wrapping_add) } else { levels };
         self.lights.highlights.iter().fold(levels, |levels, term| {
             let [half] = term.at(column);
             term.added(levels, self.lookup.at(upper(half as i32, half_reciprocal.0)) as i32)
@@ -250,7 +293,7 @@ impl<C: Pixel> OneByOne<'_, C> {
     }
 }
 
-impl<C: Pixel> ByRows for OneByOne<'_, C> {
+impl<C: Pixel, const NEAR: bool> ByRows for OneByOne<'_, C, NEAR> {
     #[inline(always)]
     fn step_row(&mut self) {
         self.colours.step_row();
@@ -269,28 +312,28 @@ impl<C: Pixel> ByRows for OneByOne<'_, C> {
     }
 }
 
-impl<C: Pixel> PixelShader<Value> for OneByOne<'_, C> {
+impl<C: Pixel, const NEAR: bool> PixelShader<Value> for OneByOne<'_, C, NEAR> {
     type Pixel = C;
 
     #[inline(always)]
     fn shade(&self, (column, (sums, [square])): Value) -> C {
         let half_reciprocal = HalfReciprocal(self.lengths.rsqrt(square) as i32);
-        let levels = self.diffuse(column, sums, &half_reciprocal);
-        self.colours.mixed(self.with_highlights(column, levels, &half_reciprocal))
+        let [levels, near] = self.diffuse(column, sums, &half_reciprocal);
+        self.colours.mixed(self.with_highlights(column, levels, near, &half_reciprocal))
     }
 }
 
 /// The value at a pixel of a surface whose colour is walked: the column, the colour, and what follows in [`Value`].
 type ColouredValue<S> = (i32, (S, ([u32; 3], [u32; 1])));
 
-impl<C: Pixel, S: SurfaceColour> PixelShader<ColouredValue<S>> for OneByOne<'_, C> {
+impl<C: Pixel, S: SurfaceColour, const NEAR: bool> PixelShader<ColouredValue<S>> for OneByOne<'_, C, NEAR> {
     type Pixel = C;
 
     #[inline(always)]
     fn shade(&self, (column, (colour, (sums, [square]))): ColouredValue<S>) -> C {
         let half_reciprocal = HalfReciprocal(self.lengths.rsqrt(square) as i32);
-        let levels = self.diffuse(column, sums, &half_reciprocal);
+        let [levels, near] = self.diffuse(column, sums, &half_reciprocal);
         let painted = self.colours.painted(levels, self.lights.ambient, colour.shares());
-        self.colours.mixed(self.with_highlights(column, painted, &half_reciprocal))
+        self.colours.mixed(self.with_highlights(column, painted, near, &half_reciprocal))
     }
 }

@@ -1,53 +1,48 @@
-//! Phong shading under one light where either the light or the viewer is near, in loops of its own.
+//! Phong shading where lights or the viewer are near, in loops of its own.
 //!
-//! P is the vector from the surface to what is near, the light or the viewer. It is linear over a triangle, as the normal N is. F is the direction to
-//! the other, which is the same everywhere. So N·F and F·P are linear, and N·P, |N|² and |P|² exactly quadratic; all are walked. The half vector of
-//! light and viewer is the same whichever of them is near. P is measured in units of its length at the farthest corner, so it is 1/2 to 1 long unless
-//! what is near is close. Three squares then lie in the table of reciprocal roots, without counting of leading zeros: |P|², |N|², and a quarter of
-//! |F + P|², which is 2 + 2 F·P where P has the length 1.
+//! One light, where either it or the viewer is near, is drawn here by the [`products`] of N, F and P. Several lights, and lights with a cone, are added
+//! one by one to a sum ([`term`]).
 //!
 //! Many triangles have no highlight, as the coefficients of these polynomials tell. Under a near light these are drawn from |N|², |P|² and N·P alone.
-//! For a near viewer they are drawn as for an infinitely far one.
-//!
-//! A light with a range is weaker by its squared distance, which is |P|²; a light with a cone is drawn by the general loop.
+//! For a near viewer they are drawn as for an infinitely far one. A light with a range is weaker by its squared distance, which is |P|².
 //!
 //! Cost: with a highlight 8 products to evaluate the polynomials, 3 roots from a table, 7 products more and the table of highlights; without one two
 //! roots and three products. Error: the tables' error; the three roots err by at most 4.5e-6 together, which is 0.15 of 1/255 at the exponent 128.
 //! Beyond this exponent the general loop draws highlights.
 
+mod products;
+pub(super) mod term;
+
 use crate::{
     arch::product::upper,
-    features::VERTEX_COLOURS,
-    format::{COSINE, UNIT},
-    interpolate::{by_column::ByColumn, field::Nodes, plane::Plane, quadric::Quadric},
+    features::SUMS_LIGHTS,
+    format::COSINE,
     lighting::{
-        albedo::Albedo,
-        constant_lights::{Coloured, DiffuseOnly, LitColours, OneLightRamp, OneLightRgb, Shades, WithHighlight, node},
-        lights::{Viewer, point},
+        constant_lights::{DiffuseOnly, LitColours, OneLightRamp, OneLightRgb, Shades, WithHighlight, node},
+        lights::{Lighting, Viewer, point},
         material_tables::MaterialTables,
         reflectance::Reflectance,
-        shape::{CoarseNearness, Shape},
+        shape::CoarseNearness,
     },
     math::{
         highlight_lut::CosineLookup,
         rsqrt::{HalfRsqrt, LEAST},
-        vector::{dot, map, over_longest, sub, wide},
+        vector::{dot, map, sub},
     },
     method::{
         CornerCosines, Shading, Style, TriangleSetup,
         cosines::{
             lit::{AtPixel, FromValues, LitShader},
-            quotient::colour,
             scale::Lengths,
         },
-        largest,
-        node::{FRACTION, coefficients, field_product, is_steep, map_six},
-        products::{FIELD_BITS, fitted, linear, quadratic, signed},
+        node::is_steep,
+        products::signed,
     },
     pixel::{Pixel, by_rows::ByRows},
     raster::band::Band,
     stream::record::Vertex,
 };
+use products::{DiffuseProducts, HALF, Products, half};
 
 /// One, Q2.30.
 const ONE: i32 = 1 << COSINE;
@@ -57,17 +52,23 @@ const BEHIND: [i32; 3] = [-ONE; 3];
 /// The largest exponent of a highlight that these loops draw: their three roots err by 0.15 of 1/255 there.
 const STEEPEST: u16 = 128;
 
-/// Fraction bits of N·H.
-const HALF: u32 = 25;
-
 /// Whether there are loops for `style`.
 pub(crate) fn take(style: Style) -> bool {
-    style.one_near && style.is_plain() && !style.perspective
+    style.near_loops && style.is_plain() && !style.perspective
 }
 
-/// Whether the loops suit the light and the surface of a triangle. A method that takes more styles than they do asks for it.
+/// Whether there are loops for a surface under these lights, of which one or the viewer is near.
+pub(crate) fn have_loops(lighting: &Lighting, reflectance: &Reflectance) -> bool {
+    match reflectance.lights() {
+        0 => false,
+        1 => lighting.has_one_near(),
+        _ => SUMS_LIGHTS,
+    }
+}
+
+/// Whether there are loops for the lights and the surface of a triangle. A method that takes more styles than they do asks for it.
 pub(crate) fn suits(setup: &TriangleSetup<'_>, shading: &Shading<'_>, reflectance: &Reflectance) -> bool {
-    !setup.has_texture() && !setup.perspective && reflectance.lights() == 1 && shading.lighting.has_one_near()
+    !setup.has_texture() && !setup.perspective && have_loops(shading.lighting, reflectance)
 }
 
 /// How a triangle has been drawn, or is to be drawn.
@@ -78,7 +79,7 @@ pub(crate) enum Drawn {
     Constantly(CornerCosines),
 }
 
-/// Draws `setup` under a near light or for a near viewer. `None` if the general loop has to draw it.
+/// Draws `setup` under one near light or for a near viewer. `None` if the general loop has to draw it.
 #[inline(never)]
 pub(crate) fn draw<C: Pixel>(
     setup: &TriangleSetup<'_>,
@@ -116,7 +117,7 @@ fn draw_by_near_light<C: Pixel>(
 ) -> Option<u32> {
     let [source] = shading.lighting.sources() else { return None };
     if let Some((shape, _)) = source.shape() {
-        let left = Ranged { nearness: distances(setup, position, shape)?, floor: tables.reflectance.highlights.floor() };
+        let left = Ranged { nearness: shape.nearness(farthest(setup, position)).coarse()?, floor: tables.reflectance.highlights.floor() };
         return draw_weakened(setup, [position, towards], left, shading, tables, band);
     }
     draw_weakened(setup, [position, towards], Whole, shading, tables, band)
@@ -157,118 +158,17 @@ fn draw_highlight<const LIGHT: bool, C: Pixel>(
     tables: MaterialTables<'_, C>,
     band: &mut Band<'_, C>,
 ) -> Option<u32> {
-    if shading.exponent > STEEPEST || !setup.gradients.walks_in_words() {
+    if shading.exponent > STEEPEST || !setup.gradients.walks_in_words() || !products.have_half() {
         return None;
     }
     let patch = products.patch(setup, fixed, Lengths::of(setup, is_steep(shading.exponent))?.square_apart(setup));
     let (lookup, lengths) = (shading.reflectance.table()?.by_cosine(), HalfRsqrt::get());
     let at = FromProducts::<LIGHT, _> { lookup, lengths, left };
-    let sums;
-    let colours = match (setup.albedos(), tables.one_light_rgb()) {
-        (Some(albedos), Some(_)) if VERTEX_COLOURS => match Albedo::one(albedos) {
-            Some(albedo) => {
-                sums = tables.painted_sums(albedo);
-                Either::Rgb(OneLightRgb::of(&sums))
-            }
-            None => {
-                let shader = LitShader::of::<Coloured<WithHighlight>>(tables.coloured_rgb(), at);
-                return Some(setup.screen.draw(setup.gradients, (patch, colour(setup, albedos)), shader, band));
-            }
-        },
-        (_, Some(colours)) => Either::Rgb(colours),
-        (_, None) => Either::Ramp(tables.one_light_ramp()?),
+    let colours = match tables.one_light_rgb() {
+        Some(colours) => Either::Rgb(colours),
+        None => Either::Ramp(tables.one_light_ramp()?),
     };
     Some(setup.screen.draw(setup.gradients, patch, LitShader::of::<WithHighlight>(colours, at), band))
-}
-
-/// Products of N, F and P at the corners or at six nodes of a triangle, Q2.30; the longest P is 1.
-struct Products {
-    /// N·P.
-    np: [i32; 6],
-    /// |P|², at least 1/4.
-    pp: [i32; 6],
-    /// F·P, at least -1/4.
-    fp: [i32; 3],
-}
-
-/// The quadratics |N|², |P|² and N·P, and the planes N·F and F·P: more than there are registers.
-type HighlightProducts = ByColumn<(Quadric<1>, ((Quadric<1>, Quadric<1>), (Plane<1>, Plane<1>)))>;
-/// The quadratics |N|², |P|² and N·P.
-type DiffuseProducts = ByColumn<(Quadric<1>, (Quadric<1>, Quadric<1>))>;
-
-impl Products {
-    /// The products for what is near at `near`, Q7.25, and the other in the direction `fixed`, Q2.30. `None` if lengths leave the table of reciprocal
-    /// roots: where what is near is close, or opposite of the other.
-    #[inline(never)]
-    fn new(setup: &TriangleSetup<'_>, near: [i32; 3], fixed: [i32; 3]) -> Option<Self> {
-        let [a, b, c] = setup.vertices();
-        let half = |[x, y, z]: [i32; 3]| [x >> 1, y >> 1, z >> 1];
-        let (near, way) = (half(near), |vertex: &Vertex| half(point(vertex.position)));
-        let [u, v, w] = over_longest::<FRACTION>([sub(near, way(a)), sub(near, way(b)), sub(near, way(c))]);
-        let way = [u, v, w];
-        let pp = field_product(&way, &way);
-        let cosine = |v| (dot(fixed, v) >> FRACTION) as i32;
-        let fp = [cosine(u), cosine(v), cosine(w)];
-        if least(coefficients(pp)) < ONE / 4 || fp[0].min(fp[1]).min(fp[2]) < -ONE / 4 {
-            return None;
-        }
-        let normal = |vertex: &Vertex| {
-            let [x, y, z] = wide(vertex.normal);
-            [x << (FRACTION - UNIT), y << (FRACTION - UNIT), z << (FRACTION - UNIT)]
-        };
-        let np = field_product(&[normal(a), normal(b), normal(c)], &way);
-        Some(Self { np, pp, fp })
-    }
-
-    /// Whether a highlight may be visible on the triangle, from N·F at the corners.
-    fn may_have_highlight(&self, setup: &TriangleSetup<'_>, fixed: [i32; 3], reflectance: &Reflectance) -> bool {
-        self.largest_half(fixed) >= setup.highlight_threshold(reflectance) >> (COSINE - HALF)
-    }
-
-    /// A bound of N·H on the triangle, Q7.25, from N·F at the corners.
-    fn largest_half(&self, fixed: [i32; 3]) -> i32 {
-        let lengths = HalfRsqrt::get();
-        let half_reciprocal = lengths.rsqrt(above_least(least(coefficients(self.pp)))) as i32;
-        let [a, b, c, ab, bc, ca] = coefficients(self.np);
-        let np = a.max(b).max(c).max(ab).max(bc).max(ca).max(0);
-        // Where F·P is positive it grows by the division, which is left out.
-        let fp = self.fp[0].min(self.fp[1]).min(self.fp[2]);
-        half(lengths, largest(&fixed), upper(np, half_reciprocal), upper(fp, half_reciprocal).min(fp >> 3))
-    }
-
-    /// The polynomials of all products.
-    #[inline(never)]
-    fn patch(&self, setup: &TriangleSetup<'_>, fixed: [i32; 3], length: Quadric<1>) -> HighlightProducts {
-        let plane = |corners| fitted(&linear([corners]), setup.gradients);
-        let ByColumn((length, quadratics)) = self.diffuse_patch(setup, length);
-        ByColumn((length, (quadratics, (plane(fixed), plane(self.fp)))))
-    }
-
-    /// The polynomials without those that highlights alone need.
-    #[inline(never)]
-    fn diffuse_patch(&self, setup: &TriangleSetup<'_>, length: Quadric<1>) -> DiffuseProducts {
-        let pp = Nodes::<6, 1, { FIELD_BITS - 2 }>::new([map_six(self.pp, |square| (above_least(square) >> 8) as i32)], 8);
-        ByColumn((length, (fitted(&pp, setup.gradients), fitted(&quadratic([self.np]), setup.gradients))))
-    }
-}
-
-/// The least of six values.
-fn least([a, b, c, ab, bc, ca]: [i32; 6]) -> i32 {
-    a.min(b).min(c).min(ab).min(bc).min(ca)
-}
-
-/// |P|², Q2.30, as the table of reciprocal roots is indexed.
-#[inline(always)]
-fn above_least(square: i32) -> u32 {
-    ((square as u32) << 2).wrapping_sub(LEAST)
-}
-
-/// N·H, Q7.25, from N·F, Q2.30, and N·P and F·P, Q5.27, where P has the length 1 and N any.
-#[inline(always)]
-fn half(lengths: &HalfRsqrt, nf: i32, np: i32, fp: i32) -> i32 {
-    // |F + P|² / 4 = (1 + F·P) / 2, of which half the reciprocal root is 1 / |F + P|.
-    let quarter = (1u32 << 31).wrapping_add((fp as u32) << 4);
-    upper((nf >> 3) + np, lengths.rsqrt(quarter.wrapping_sub(LEAST)) as i32)
 }
 
 /// What is left of a near light at a pixel.
@@ -308,10 +208,16 @@ impl Ranged {
     /// The strength, Q2.30.
     #[inline(always)]
     fn strength(&self, square: u32) -> i32 {
-        // Rounding may carry it a little below the least square, or above 1, which does not fit.
-        const BELOW: u32 = 1 << 28;
-        self.nearness.strength(square.wrapping_add(BELOW).saturating_add(LEAST - BELOW))
+        self.nearness.strength(squared(square))
     }
+}
+
+/// |P|², unsigned Q0.32, as it is walked, from the form in which the table of reciprocal roots is indexed.
+#[inline(always)]
+fn squared(square: u32) -> u32 {
+    // Rounding may carry it a little below the least square, or above 1, which does not fit.
+    const BELOW: u32 = 1 << 28;
+    square.wrapping_add(BELOW).saturating_add(LEAST - BELOW)
 }
 
 impl Left for Ranged {
@@ -328,15 +234,15 @@ impl Left for Ranged {
     }
 }
 
-/// The squared distance of the farthest corner, which |P|² counts as 1, as a part of the light's range.
-fn distances(setup: &TriangleSetup<'_>, position: [i32; 3], shape: &Shape) -> Option<CoarseNearness> {
+/// The squared distance of the farthest corner from `position`, which |P|² counts as 1; Q14.48.
+fn farthest(setup: &TriangleSetup<'_>, position: [i32; 3]) -> u64 {
     let half = |vertex: &Vertex| map(sub(position, point(vertex.position)), |c| c >> 1);
     let square = |vertex| {
         let way = half(vertex);
         dot(way, way) as u64
     };
     let [a, b, c] = setup.vertices();
-    shape.nearness(square(a).max(square(b)).max(square(c))).coarse()
+    square(a).max(square(b)).max(square(c))
 }
 
 /// Values at the pixel are walked products. `LIGHT` tells whether the light is near and not the viewer.
@@ -369,20 +275,6 @@ impl<const LIGHT: bool, W: Left> AtPixel<Value> for FromProducts<'_, LIGHT, W> {
         let half = half(self.lengths, signed(nf), np, upper(signed(fp), near));
         let light = if LIGHT { np << 3 } else { signed(nf) };
         ((), self.left.of((upper(light, normal), self.lookup.at(upper(half << (COSINE - HALF), normal))), pp))
-    }
-}
-
-/// The walked products, and the colour of the surface beside them.
-impl<S, const LIGHT: bool, W: Left> AtPixel<(Value, S)> for FromProducts<'_, LIGHT, W> {
-    type Common = ();
-    type Values = (CosineAndHighlight, S);
-
-    const BITS: u32 = DIFFUSE;
-
-    #[inline(always)]
-    fn at(&self, (products, colour): (Value, S)) -> ((), (CosineAndHighlight, S)) {
-        let ((), light) = self.at(products);
-        ((), (light, colour))
     }
 }
 
