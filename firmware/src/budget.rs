@@ -28,7 +28,7 @@ pub const PICO: Budget = Budget {
 /// OLED; 64 KiB of RAM in all, of which the most demanding streams of the tests take up to 8.6 KB of stack.
 pub const LM3S6965EVB: Budget = Budget { height: 64, layout: Layout::new(128, 16).vertices(448).materials(2).active_triangles(32) };
 /// Frame buffer in plentiful RAM, one band for the whole picture; the edges are for firmware that draws smooth outlines.
-pub const MPS2: Budget = Budget {
+pub const FRAMEBUFFER: Budget = Budget {
     height: 240,
     layout: Layout::new(320, 240).vertices(16384).triangles(32768).materials(16).objects(64).active_triangles(0).edges(4096),
 };

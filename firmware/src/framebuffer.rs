@@ -1,6 +1,6 @@
 //! A display that is nothing but memory: 320x240 RGB565, which the host reads while the program waits.
 
-use crate::{Display, Failure, budget::MPS2, error_picture, painter::part, semihosting};
+use crate::{Display, Failure, budget, error_picture, painter::part, semihosting};
 use core::convert::Infallible;
 use embedded_graphics::{
     pixelcolor::{IntoStorage, Rgb565, RgbColor},
@@ -10,9 +10,9 @@ use embedded_graphics::{
 use microphong::{Layout, pixel::Output};
 
 /// The renderer's memory.
-pub const LAYOUT: Layout = MPS2.layout.antialias(cfg!(feature = "antialias"));
+pub const LAYOUT: Layout = budget::FRAMEBUFFER.layout.antialias(cfg!(feature = "antialias"));
 /// Pixels of the frame buffer.
-pub const LENGTH: usize = MPS2.layout.width * MPS2.height;
+pub const LENGTH: usize = budget::FRAMEBUFFER.layout.width * budget::FRAMEBUFFER.height;
 
 /// Rows from the top, two bytes a pixel, little-endian.
 #[derive(Debug)]
@@ -28,7 +28,7 @@ impl Framebuffer {
     fn blit(&mut self, area: Rectangle, pixels: &[Rgb565]) {
         let (left, top) = (area.top_left.x as usize, area.top_left.y as usize);
         let width = area.size.width as usize;
-        let rows = self.0.chunks_exact_mut(MPS2.layout.width).skip(top).map(|row| &mut row[left..left + width]);
+        let rows = self.0.chunks_exact_mut(budget::FRAMEBUFFER.layout.width).skip(top).map(|row| &mut row[left..left + width]);
         for (row, source) in rows.zip(pixels.chunks_exact(width)) {
             for (to, from) in row.iter_mut().zip(source) {
                 *to = from.into_storage();
@@ -39,7 +39,7 @@ impl Framebuffer {
 
 impl OriginDimensions for Framebuffer {
     fn size(&self) -> Size {
-        Size::new(MPS2.layout.width as u32, MPS2.height as u32)
+        Size::new(budget::FRAMEBUFFER.layout.width as u32, budget::FRAMEBUFFER.height as u32)
     }
 }
 
@@ -51,7 +51,7 @@ impl DrawTarget for Framebuffer {
         let area = self.bounding_box();
         for Pixel(point, colour) in pixels {
             if area.contains(point) {
-                self.0[point.y as usize * MPS2.layout.width + point.x as usize] = colour.into_storage();
+                self.0[point.y as usize * budget::FRAMEBUFFER.layout.width + point.x as usize] = colour.into_storage();
             }
         }
         Ok(())
@@ -59,7 +59,7 @@ impl DrawTarget for Framebuffer {
 
     fn fill_solid(&mut self, area: &Rectangle, colour: Rgb565) -> Result<(), Infallible> {
         let area = area.intersection(&self.bounding_box());
-        let row = [colour; MPS2.layout.width];
+        let row = [colour; budget::FRAMEBUFFER.layout.width];
         for y in area.rows() {
             let line = Rectangle::new(Point::new(area.top_left.x, y), Size::new(area.size.width, 1));
             self.blit(line, &row[..area.size.width as usize]);
@@ -99,7 +99,7 @@ impl Display for Framebuffer {
     }
 }
 
-/// Memory and start of a board with a frame buffer and these methods. It is a macro, because the statics of `main` must be written in it.
+/// Memory and start of a board with a frame buffer and these methods. It is a macro, because the sizes of statics cannot depend on a type parameter.
 #[macro_export]
 macro_rules! framebuffer_board {
     ($shaders:expr) => {
@@ -112,15 +112,16 @@ macro_rules! framebuffer_board {
         /// The host finds it by this name.
         #[unsafe(no_mangle)]
         static mut FRAMEBUFFER: [u16; framebuffer::LENGTH] = [0; framebuffer::LENGTH];
+        static mut BAND: [Rgb565; LAYOUT.band()] = [Rgb565::BLACK; LAYOUT.band()];
+        static mut MEMORY: [u64; LAYOUT.words::<Rgb565>()] = [0; LAYOUT.words::<Rgb565>()];
 
-        #[::cortex_m_rt::entry]
+        /// Draws the stream.
+        #[::microphong_firmware::entry]
         fn main() -> ! {
-            static mut BAND: [Rgb565; LAYOUT.band()] = [Rgb565::BLACK; LAYOUT.band()];
-            static mut MEMORY: [u64; LAYOUT.words::<Rgb565>()] = [0; LAYOUT.words::<Rgb565>()];
-
-            // SAFETY: nothing else in the program names it, and `main` runs once.
-            let picture = unsafe { &mut *(&raw mut FRAMEBUFFER) };
-            run(&mut framebuffer::Framebuffer::new(picture), &mut OneCore { band: BAND }, &LAYOUT, MEMORY, $shaders)
+            let (picture, band, memory) = (&raw mut FRAMEBUFFER, &raw mut BAND, &raw mut MEMORY);
+            // SAFETY: nothing else in the program names them, and `main` runs once.
+            let (picture, band, memory) = unsafe { (&mut *picture, &mut *band, &mut *memory) };
+            run(&mut framebuffer::Framebuffer::new(picture), &mut OneCore { band }, &LAYOUT, memory, $shaders)
         }
     };
 }

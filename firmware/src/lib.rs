@@ -7,6 +7,9 @@ pub mod budget;
 mod failure;
 mod painter;
 mod picture;
+#[cfg_attr(target_arch = "arm", path = "cortex_m.rs")]
+#[cfg_attr(target_arch = "riscv32", path = "riscv.rs")]
+mod processor;
 #[cfg(feature = "semihosting")]
 mod semihosting;
 #[cfg(feature = "literature")]
@@ -14,7 +17,7 @@ pub mod shaders;
 mod stack;
 mod stream;
 
-#[cfg(any(feature = "mps2-an385", feature = "mps2-an386"))]
+#[cfg(feature = "framebuffer")]
 pub mod framebuffer;
 #[cfg(feature = "styles")]
 pub mod register;
@@ -28,13 +31,13 @@ pub mod st7789;
 pub use failure::Failure;
 pub use painter::{OneCore, Painter};
 pub use picture::error_picture;
+pub use processor::entry;
 
 use embedded_graphics::{prelude::*, primitives::Rectangle};
 use microphong::{
     Counts, Layout, Renderer, Shader, Stream,
     pixel::{Output, PictureCrc, Pixel, gamma::SRGB},
 };
-use panic_probe as _;
 
 /// A board as the frame loop needs it.
 pub trait Display {

@@ -1,6 +1,6 @@
 //! A display that takes pixels of any format and shows nothing, like the bus of a real one.
 
-use crate::{Display, Failure, budget::MPS2, framebuffer::LENGTH, painter::part, semihosting};
+use crate::{Display, Failure, budget::FRAMEBUFFER, framebuffer::LENGTH, painter::part, semihosting};
 use core::hint::black_box;
 use embedded_graphics::{prelude::*, primitives::Rectangle};
 use microphong::pixel::{Output, Pixel};
@@ -21,7 +21,7 @@ impl<C: Pixel, T> Display for Register<C, T> {
     type Color = C;
 
     fn size(&self) -> Size {
-        Size::new(MPS2.layout.width as u32, MPS2.height as u32)
+        Size::new(FRAMEBUFFER.layout.width as u32, FRAMEBUFFER.height as u32)
     }
 
     fn send(&mut self, area: Rectangle, band: &'static mut [C], output: Output) -> &'static mut [C] {

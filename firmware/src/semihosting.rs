@@ -1,29 +1,31 @@
 //! Talking to the host that emulates the board.
 
-use cortex_m_semihosting::{nr, syscall, syscall1};
 use defmt_semihosting as _;
+use semihosting::{process, sys::arm_compat::sys_readc};
+
+/// The exit code after a panic or a fault.
+pub(crate) const CRASH: i32 = 101;
 
 /// Blocks until the host sends a byte: it has looked at the display.
 pub(crate) fn wait_for_host() {
-    // SAFETY: READC takes no argument and touches no memory of ours.
-    unsafe { syscall1(nr::READC, 0) };
+    sys_readc();
 }
 
 /// Ends the emulation with this exit code.
-pub(crate) fn exit(code: u32) -> ! {
-    /// Like EXIT, with a code.
-    const EXIT_EXTENDED: usize = 0x20;
-    /// The program ended by itself.
-    const APPLICATION_EXIT: u32 = 0x2_0026;
-    let arguments = [APPLICATION_EXIT, code];
-    loop {
-        // SAFETY: the call reads two words.
-        unsafe { syscall(EXIT_EXTENDED, &arguments) };
-    }
+pub(crate) fn exit(code: i32) -> ! {
+    process::exit(code)
 }
 
-/// Panics and faults end here. The emulator would run the default handler's loop for ever.
+/// Faults end here, and panics, too. The emulator would run the default handler's loop for ever.
+#[cfg(target_arch = "arm")]
 #[cortex_m_rt::exception]
 unsafe fn HardFault(_: &cortex_m_rt::ExceptionFrame) -> ! {
-    exit(101)
+    exit(CRASH)
+}
+
+/// Faults end here. The emulator would run the default handler's loop for ever.
+#[cfg(target_arch = "riscv32")]
+#[unsafe(no_mangle)]
+extern "C" fn ExceptionHandler(_: &riscv_rt::TrapFrame) -> ! {
+    exit(CRASH)
 }

@@ -1,19 +1,14 @@
 //! Measurement of the largest stack that was used.
 
-use cortex_m_rt::STACK_PAINT_VALUE;
+use crate::processor::{PAINT, stack};
 
 /// Bytes of stack used since the start. The start-up code has painted all of the stack; what has lost its paint has been used.
 #[must_use]
 pub(crate) fn used() -> usize {
-    unsafe extern "C" {
-        static _stack_end: u32;
-        static _stack_start: u32;
-    }
-    let bottom = &raw const _stack_end;
-    let top = &raw const _stack_start;
-    let words = (top.addr() - bottom.addr()) / size_of::<u32>();
-    // SAFETY: the linker places both symbols at the ends of the stack, aligned; it is readable RAM.
-    unsafe { without_paint(bottom, words, STACK_PAINT_VALUE) }
+    let stack = stack();
+    let words = (stack.end.addr() - stack.start.addr()) / size_of::<u32>();
+    // SAFETY: the linker places both ends of the stack, aligned; it is readable RAM.
+    unsafe { without_paint(stack.start, words, PAINT) }
 }
 
 /// Bytes of a stack, its lowest word at `bottom`, that have lost their paint.

@@ -5,9 +5,8 @@ use std::{env, error::Error, fs, path::PathBuf};
 
 fn main() -> Result<(), Box<dyn Error>> {
     let target = env::var("TARGET")?;
-    let is_riscv = target.starts_with("riscv32");
     let board = match target.as_str() {
-        _ if is_riscv => "riscv-virt",
+        "riscv32imc-unknown-none-elf" => "riscv-virt",
         "thumbv8m.main-none-eabihf" => "mps2-an505",
         "thumbv7em-none-eabihf" => "mps2-an386",
         _ => "mps2-an385",
@@ -18,9 +17,6 @@ fn main() -> Result<(), Box<dyn Error>> {
         fs::copy(path, out.join(name)).map_err(|e| format!("{path}: {e}"))?;
     }
     println!("cargo:rustc-link-search={}", out.display());
-    if is_riscv {
-        println!("cargo:rustc-link-arg-bins=-Tmemory.x");
-    }
     for argument in ["--nmagic", "-Tlink.x", "-Tstream.x"] {
         println!("cargo:rustc-link-arg-bins={argument}");
     }

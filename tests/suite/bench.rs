@@ -11,7 +11,7 @@ use microphong_sim::{
         styles,
         styles::RedrawCost,
     },
-    board::{Blocks, elf::Elf, trace},
+    board::{Blocks, Board, elf::Elf, trace},
     scene,
     shader::Shader,
     verify,
@@ -24,10 +24,15 @@ use std::{
     process::Command,
 };
 
-/// QEMU logs blocks of instructions; one by one it executes the same, address by address.
+/// QEMU logs blocks of instructions; one by one it executes the same, address by address. Each of its programs has a log of its own kind.
 #[test]
 fn blocks_are_the_instructions_in_them() {
-    let board = Processor::CortexM3.board().unwrap();
+    for processor in [Processor::CortexM3, Processor::RiscV] {
+        compare_blocks(processor.board().unwrap());
+    }
+}
+
+fn compare_blocks(board: Board) {
     let scene = scene::load("sphere-168").unwrap();
     let elf = Elf::read(&verify::build(board, false).unwrap()).unwrap();
     let elf = elf.with_stream(&verify::prepare(scene.stream.as_bytes(), named("duff"), 1).unwrap()).unwrap();
@@ -44,9 +49,9 @@ fn blocks_are_the_instructions_in_them() {
         (counts, sequence)
     });
     let [(blocks, _), _] = &executed;
-    println!("{} instructions at {} addresses", blocks.values().sum::<u64>(), blocks.len());
+    println!("{board}: {} instructions at {} addresses", blocks.values().sum::<u64>(), blocks.len());
     assert!(blocks.values().sum::<u64>() > 1_000_000);
-    assert!(executed[0] == executed[1], "blocks and single instructions differ");
+    assert!(executed[0] == executed[1], "{board}: blocks and single instructions differ");
 }
 
 /// Each style is counted as itself, in the order of their names. Flat shading costs the same in perspective, but for the question. Smooth outlines take

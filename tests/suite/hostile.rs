@@ -235,3 +235,18 @@ fn mps2_an385() -> Result {
 fn mps2_an386() -> Result {
     board(Board::Mps2An386)
 }
+
+#[test]
+fn mps2_an500() -> Result {
+    board(Board::Mps2An500)
+}
+
+#[test]
+fn mps2_an505() -> Result {
+    board(Board::Mps2An505)
+}
+
+#[test]
+fn riscv_virt() -> Result {
+    board(Board::RiscvVirt)
+}

@@ -21,8 +21,10 @@ fn link(target: &str, packages: &[&str], features: &str) -> (bool, String) {
 
 #[test]
 fn no_panic_can_be_reached() {
-    let targets: BTreeSet<_> = Board::ALL.into_iter().map(Board::target).collect();
-    assert_eq!(targets.len(), 3);
+    // Code for a Cortex-M33 is almost that for a Cortex-M4F.
+    let boards = Board::ALL.into_iter().filter(|&board| board != Board::Mps2An505);
+    let targets: BTreeSet<_> = boards.map(Board::target).collect();
+    assert_eq!(targets.len(), 4);
     for target in targets {
         let (linked, log) = link(target, &["--workspace"], "panic-free/all");
         assert!(linked, "{target}: {log}");

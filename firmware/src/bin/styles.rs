@@ -41,13 +41,17 @@ formats! {
 
 const LAYOUT: Layout = framebuffer::LAYOUT;
 
-#[cortex_m_rt::entry]
-fn main() -> ! {
-    static mut BAND: heapless::Vec<Drawn, { LAYOUT.band() }> = heapless::Vec::new();
-    static mut ROOM: [Taken; LAYOUT.band()] = [VALUE; LAYOUT.band()];
-    static mut MEMORY: [u64; LAYOUT.words::<Drawn>()] = [0; LAYOUT.words::<Drawn>()];
+static mut BAND: heapless::Vec<Drawn, { LAYOUT.band() }> = heapless::Vec::new();
+static mut ROOM: [Taken; LAYOUT.band()] = [VALUE; LAYOUT.band()];
+static mut MEMORY: [u64; LAYOUT.words::<Drawn>()] = [0; LAYOUT.words::<Drawn>()];
 
+/// Draws the stream.
+#[microphong_firmware::entry]
+fn main() -> ! {
+    let (band, room, memory) = (&raw mut BAND, &raw mut ROOM, &raw mut MEMORY);
+    // SAFETY: nothing else in the program names them, and `main` runs once.
+    let (band, room, memory) = unsafe { (&mut *band, &mut *room, &mut *memory) };
     // Not every format has a constant for black.
-    let _ = BAND.resize(LAYOUT.band(), Drawn::pack([0; 3]));
-    run(&mut Register { room: ROOM, pass: PASS }, &mut OneCore { band: BAND }, &LAYOUT, MEMORY, shaders::every())
+    let _ = band.resize(LAYOUT.band(), Drawn::pack([0; 3]));
+    run(&mut Register { room, pass: PASS }, &mut OneCore { band }, &LAYOUT, memory, shaders::every())
 }

@@ -9,6 +9,12 @@ pub enum Processor {
     CortexM3,
     /// On the board `mps2-an386`.
     CortexM4F,
+    /// On the board `mps2-an500`. It executes what is compiled for the Cortex-M4F.
+    CortexM7,
+    /// On the board `mps2-an505`.
+    CortexM33,
+    /// On the board `riscv-virt`.
+    RiscV,
     /// On the board `pico`.
     CortexM0Plus,
     /// The host's.
@@ -17,7 +23,8 @@ pub enum Processor {
 
 impl Processor {
     /// All processors that can be measured.
-    pub const ALL: [Self; 4] = [Self::CortexM3, Self::CortexM4F, Self::CortexM0Plus, Self::X86_64];
+    pub const ALL: [Self; 7] =
+        [Self::CortexM3, Self::CortexM4F, Self::CortexM7, Self::CortexM33, Self::RiscV, Self::CortexM0Plus, Self::X86_64];
 
     /// The processor's name.
     #[must_use]
@@ -25,6 +32,9 @@ impl Processor {
         match self {
             Self::CortexM3 => "cortex-m3",
             Self::CortexM4F => "cortex-m4f",
+            Self::CortexM7 => "cortex-m7",
+            Self::CortexM33 => "cortex-m33",
+            Self::RiscV => "risc-v",
             Self::CortexM0Plus => "cortex-m0plus",
             Self::X86_64 => "x86-64",
         }
@@ -36,6 +46,9 @@ impl Processor {
         match self {
             Self::CortexM3 => Some(Board::Mps2An385),
             Self::CortexM4F => Some(Board::Mps2An386),
+            Self::CortexM7 => Some(Board::Mps2An500),
+            Self::CortexM33 => Some(Board::Mps2An505),
+            Self::RiscV => Some(Board::RiscvVirt),
             Self::CortexM0Plus => Some(Board::Pico),
             Self::X86_64 => None,
         }

@@ -6,7 +6,7 @@ pub mod baseline;
 use anyhow::{Context, Result};
 use embedded_graphics_core::geometry;
 use microphong::Stream;
-use microphong_boards::{Machine, build::releases, elf::Elf, stack, verify};
+use microphong_boards::{Board, build::releases, check, elf::Elf, stack, verify};
 use microphong_models::scene::Scene;
 use microphong_render::{
     chip::Core,
@@ -20,13 +20,13 @@ use serde::Serialize;
 /// Frames that are drawn to measure the stack: a turn of the built-in scenes.
 const FRAMES: u16 = 120;
 
-/// The machine on which QEMU executes programs for a processor; a Cortex-M3 executes code for a Cortex-M0+ as well.
-const fn machine(core: Core) -> Machine {
+/// The board on which programs for a processor are executed; a Cortex-M3 executes code for a Cortex-M0+ as well.
+const fn board(core: Core) -> Board {
     match core {
-        Core::CortexM0Plus | Core::CortexM3 => Machine::Arm("mps2-an385"),
-        Core::CortexM4F => Machine::Arm("mps2-an386"),
-        Core::CortexM33 => Machine::Arm("mps2-an505"),
-        Core::RiscV => Machine::RiscvVirt,
+        Core::CortexM0Plus | Core::CortexM3 => Board::Mps2An385,
+        Core::CortexM4F => Board::Mps2An386,
+        Core::CortexM33 => Board::Mps2An505,
+        Core::RiscV => Board::RiscvVirt,
     }
 }
 
@@ -56,7 +56,7 @@ pub struct Size {
 pub fn measure(programs: &[Program], scene: &Scene, tick: &(dyn Fn() + Sync)) -> Result<Vec<Size>> {
     let stream = scene.stream.parse()?;
     let bytes = verify::prepare(scene.stream.as_bytes(), Shader::of(&stream)?, stream.header.frames.clamp(1, FRAMES))?;
-    programs.iter().try_for_each(|program| machine(program.core).check())?;
+    programs.iter().try_for_each(|program| check(board(program.core)))?;
     let mut built = Vec::new();
     for (core, features) in Core::ALL.into_iter().flat_map(|core| Features::ALL.map(|features| (core, features))) {
         let of = programs.iter().filter(|program| (program.core, program.features) == (core, features));
@@ -99,6 +99,6 @@ fn size(program: Program, elf: &Elf, stream: &Stream<'_>) -> Result<Size> {
         flash_bytes: elf.flash_bytes()? - mesh_bytes,
         mesh_bytes,
         ram_bytes: elf.ram_bytes()? - room + program.format.bytes(&layout).into_iter().sum::<usize>() as u64 - shapes,
-        stack_bytes: stack(machine(program.core), elf)?,
+        stack_bytes: stack(board(program.core), elf)?,
     })
 }

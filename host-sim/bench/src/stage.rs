@@ -69,7 +69,7 @@ pub(super) enum Part {
 
 /// Parts of functions by what their names contain; the first that fits counts. Names as the compiler writes them, so that this
 /// is the one place to follow when functions move.
-const TABLE: [(&str, Part); 37] = [
+const TABLE: [(&str, Part); 38] = [
     ("microphong_kernels::processor::", Part::Row),
     ("microphong::raster::triangle::fill_rows", Part::Row),
     ("as microphong::raster::canvas::SpanShader::span", Part::Row),
@@ -105,6 +105,7 @@ const TABLE: [(&str, Part); 37] = [
     ("embassy_rp::critical_section_impl", Part::Idle),
     ("microphong_firmware::check", Part::Unwatched),
     ("microphong_firmware::stack", Part::Unwatched),
+    ("microphong_firmware::processor::paint", Part::Unwatched),
     ("microphong::stream", Part::Unwatched),
     ("Reset", Part::Unwatched),
     ("microphong_firmware::animate", Part::Outside),

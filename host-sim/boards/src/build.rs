@@ -26,17 +26,17 @@ pub fn program(board: Board, name: &str) -> Result<PathBuf> {
     release(name, &format!("microphong-firmware/{board}"), board.target(), &what)
 }
 
-/// Builds the firmware of `board` that draws smooth outlines, and returns the ELF's path.
+/// Builds the firmware of `board` that draws smooth outlines, and returns the path of a copy of the ELF, as [`styles`] does.
 ///
 /// # Errors
 /// When the board has no memory for them, the target or the compiler is missing, or the firmware does not compile.
 pub fn antialias(board: Board) -> Result<PathBuf> {
     ensure!(board.smooths(), "the firmware of {board} draws no smooth outlines: they need more memory than it has");
-    release("antialias", &all(board, "antialias"), board.target(), &format!("the firmware for {board} with smooth outlines"))
+    copied(board, "antialias", "antialias")
 }
 
 /// Builds the program `styles` for `board`, which draws in a style or pixel format that cargo features name, and returns the path of a copy of the ELF.
-/// Programs with other features have other copies, so that tests can run them side by side.
+/// Programs for other boards and with other features have other copies, so that tests can run them side by side.
 ///
 /// # Errors
 /// When the board has no memory for it, the target or the compiler is missing, or the program does not compile.

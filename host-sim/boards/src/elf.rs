@@ -157,6 +157,11 @@ impl Elf {
             for relocation in relocations {
                 let Some(symbol) = elf.syms.get(relocation.r_sym) else { continue };
                 let place = relocation.r_offset as u32;
+                // The notes of RISC-V say all. A note that has become void names no symbol.
+                if let Some(addend) = relocation.r_addend {
+                    found.push((place, (symbol.st_value as i64 + addend) as u32));
+                    continue;
+                }
                 if symbol.st_type() != STT_SECTION {
                     found.push((place, symbol.st_value as u32 & !u32::from(symbol.is_function())));
                     continue;

@@ -1,8 +1,5 @@
 //! The boards, each emulated down to its display, so that the very program that is flashed can be checked.
 
-// The firmware's own file: the numbers exist once.
-#[path = "../../../firmware/src/budget.rs"]
-pub mod budget;
 pub mod build;
 pub mod child;
 pub mod elf;
@@ -13,129 +10,12 @@ pub mod sources;
 pub mod verify;
 
 use anyhow::{Context, Result};
-use budget::Budget;
 use elf::Elf;
+pub use microphong_render::board::{Board, Format, budget};
 use microphong_render::shader::Shader;
 pub use pico::{Fault, FrameTime, Pico};
-pub use qemu::{Blocks, INSTRUCTIONS_PER_TICK, Machine, clocked, stack, trace};
-use serde::{Serialize, Serializer};
-use std::{fmt, ops::Range};
-
-/// A board that the firmware runs on.
-#[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord, Hash)]
-pub enum Board {
-    /// Raspberry Pi Pico, ST7789 panel of 240x240 pixels.
-    Pico,
-    /// TI LM3S6965 evaluation board, OLED of 128x64 pixels with 16 greys.
-    Lm3s6965evb,
-    /// Arm MPS2 with a Cortex-M3, frame buffer of 320x240 pixels.
-    Mps2An385,
-    /// Arm MPS2 with a Cortex-M4F, frame buffer of 320x240 pixels.
-    Mps2An386,
-}
-
-/// Pixel formats of boards.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub enum Format {
-    /// Five, six and five bits of red, green and blue.
-    Rgb565,
-    /// Five, six and five bits of red, green and blue, the high byte first in memory.
-    Rgb565Be,
-    /// Sixteen greys.
-    Gray4,
-}
-
-impl Board {
-    /// All boards.
-    pub const ALL: [Self; 4] = [Self::Pico, Self::Lm3s6965evb, Self::Mps2An385, Self::Mps2An386];
-
-    /// The name on the command line, of the firmware's feature and of its program.
-    #[must_use]
-    pub const fn name(self) -> &'static str {
-        match self {
-            Self::Pico => "pico",
-            Self::Lm3s6965evb => "lm3s6965evb",
-            Self::Mps2An385 => "mps2-an385",
-            Self::Mps2An386 => "mps2-an386",
-        }
-    }
-
-    /// The target that its firmware is compiled for.
-    #[must_use]
-    pub const fn target(self) -> &'static str {
-        match self {
-            Self::Pico => "thumbv6m-none-eabi",
-            Self::Lm3s6965evb | Self::Mps2An385 => "thumbv7m-none-eabi",
-            Self::Mps2An386 => "thumbv7em-none-eabihf",
-        }
-    }
-
-    /// The sizes that its firmware is built with.
-    #[must_use]
-    pub const fn budget(self) -> Budget {
-        match self {
-            Self::Pico => budget::PICO,
-            Self::Lm3s6965evb => budget::LM3S6965EVB,
-            Self::Mps2An385 | Self::Mps2An386 => budget::MPS2,
-        }
-    }
-
-    /// Width and height of its display.
-    #[must_use]
-    pub const fn size(self) -> (u32, u32) {
-        let budget = self.budget();
-        (budget.layout.width as u32, budget.height as u32)
-    }
-
-    /// Whether its firmware has room for the method.
-    #[must_use]
-    pub fn has(self, shader: Shader) -> bool {
-        self != Self::Lm3s6965evb || Shader::CORE.contains(&shader)
-    }
-
-    /// Whether its firmware has room for labels: for fonts.
-    #[must_use]
-    pub fn has_text(self) -> bool {
-        self != Self::Lm3s6965evb
-    }
-
-    /// Whether it has memory for smooth outlines, so that there is a firmware that draws them.
-    #[must_use]
-    pub const fn smooths(self) -> bool {
-        matches!(self, Self::Mps2An385 | Self::Mps2An386)
-    }
-
-    /// The value of a byte of the memory for streams before anything is written there: erased flash, but QEMU begins with zeros.
-    #[must_use]
-    pub const fn blank(self) -> u8 {
-        match self {
-            Self::Pico => 0xFF,
-            Self::Lm3s6965evb | Self::Mps2An385 | Self::Mps2An386 => 0,
-        }
-    }
-
-    /// The board's pixel format.
-    #[must_use]
-    pub const fn format(self) -> Format {
-        match self {
-            Self::Pico => Format::Rgb565Be,
-            Self::Lm3s6965evb => Format::Gray4,
-            Self::Mps2An385 | Self::Mps2An386 => Format::Rgb565,
-        }
-    }
-}
-
-impl fmt::Display for Board {
-    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
-        f.write_str(self.name())
-    }
-}
-
-impl Serialize for Board {
-    fn serialize<S: Serializer>(&self, serializer: S) -> Result<S::Ok, S::Error> {
-        serializer.serialize_str(self.name())
-    }
-}
+pub use qemu::{Blocks, INSTRUCTIONS_PER_TICK, check, clocked, stack, trace};
+use std::ops::Range;
 
 /// When a run ends, unless the firmware reports a failure before.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -198,7 +78,7 @@ impl Recording {
 pub fn run(board: Board, elf: &Elf, until: Until) -> Result<Recording> {
     match board {
         Board::Pico => pico::run(elf, until),
-        Board::Lm3s6965evb | Board::Mps2An385 | Board::Mps2An386 => qemu::run(board, elf, until),
+        _ => qemu::run(board, elf, until),
     }
 }
 
@@ -237,7 +117,7 @@ pub fn watchable(board: Board, stream: &[u8], shader: Shader) -> Result<Vec<u8>>
                 header.camera.period = u16::MAX;
             }
         }),
-        Board::Lm3s6965evb | Board::Mps2An385 | Board::Mps2An386 => verify::prepare(stream, shader, 1),
+        _ => verify::prepare(stream, shader, 1),
     }
 }
 
@@ -249,9 +129,7 @@ pub fn watchable(board: Board, stream: &[u8], shader: Shader) -> Result<Vec<u8>>
 pub fn watch(board: Board, elf: &Elf, ranges: &[Range<u32>], visit: &mut dyn FnMut(Executed)) -> Result<Watched> {
     let (recording, time) = match board {
         Board::Pico => pico::watch(elf, visit).map(|(recording, time)| (recording, Some(time)))?,
-        Board::Lm3s6965evb | Board::Mps2An385 | Board::Mps2An386 => {
-            (trace(board, elf, ranges, Blocks::Whole, &mut |address| visit(Executed { core: 0, address, cycles: 0 }))?, None)
-        }
+        _ => (trace(board, elf, ranges, Blocks::Whole, &mut |address| visit(Executed { core: 0, address, cycles: 0 }))?, None),
     };
     Ok(Watched { recording, time })
 }

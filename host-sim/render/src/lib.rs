@@ -1,5 +1,6 @@
 //! Pictures of triangle streams, drawn by the core.
 
+pub mod board;
 pub mod chip;
 pub mod choices;
 mod cuts;

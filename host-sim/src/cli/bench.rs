@@ -21,6 +21,7 @@ use microphong_sim::{
         renewal::{self, Growth},
         styles::{self, Named, RedrawCost, StyleCosts},
     },
+    board::Board,
     scene::{self, Scene},
     shader::Shader,
 };
@@ -45,12 +46,9 @@ pub(crate) struct Arguments {
     /// default is the budget of the scene. If it has none, the budget is 4, as on all RGB565 displays.
     #[arg(long, value_name = "LSB,...", value_delimiter = ',', value_parser = parse::budget)]
     budget: Vec<ErrorBudget>,
-    /// Boards, separated by commas: mps2-an385 (Cortex-M3), mps2-an386 (Cortex-M4F), pico (Cortex-M0+), x86-64 (this computer);
-    /// or all. The default is mps2-an385, or x86-64 with --styles.
-    #[arg(long, value_name = "B,...", value_parser = processors)]
+    #[arg(long, value_name = "B,...", value_parser = processors, help = boards_help())]
     board: Option<Several<Processor>>,
-    /// Draw smooth outlines. Only the boards mps2-an385 and mps2-an386 have the memory for them; name them with --board.
-    #[arg(long, conflicts_with_all = ["report", "peers"])]
+    #[arg(long, conflicts_with_all = ["report", "peers"], help = antialias_help())]
     antialias: bool,
     /// Print one JSON object per frame, or per animation.
     #[arg(long)]
@@ -130,6 +128,21 @@ Exit codes: 0 success; 1 failure, or a cost has grown; 2 wrong usage.";
 /// The boards of `--board`, or this one.
 fn boards(arguments: &Arguments, default: Processor) -> Several<Processor> {
     arguments.board.clone().unwrap_or(Several { values: vec![default], all: false })
+}
+
+/// Explains `--board`.
+fn boards_help() -> String {
+    let names = Processor::ALL.map(|processor| match processor.board() {
+        Some(board) => format!("{board} ({})", processor.name()),
+        None => format!("{} (this computer)", processor.name()),
+    });
+    format!("Boards, separated by commas: {}; or all. The default is mps2-an385, or x86-64 with --styles", names.join(", "))
+}
+
+/// Explains `--antialias`.
+fn antialias_help() -> String {
+    let smooth = Board::names(Processor::ALL.into_iter().filter_map(Processor::board).filter(|board| board.smooths()));
+    format!("Draw smooth outlines. Only some boards have the memory for them: {smooth}; name them with --board")
 }
 
 /// Processors, by their boards.

@@ -2,7 +2,7 @@
 
 use super::{
     Outcome, Usage,
-    boards::{BOARDS, Board, TooLarge},
+    boards::{self, TooLarge},
     count::{self, Cost, Counter},
     features,
     mesh_options::{self, MeshOptions},
@@ -16,6 +16,7 @@ use super::{
 use anyhow::{Context, Result, anyhow, bail};
 use embedded_graphics_core::geometry::Size;
 use microphong::{Layout, Stream, format::ErrorBudget, stream::record};
+use microphong_render::board::Board;
 use microphong_sim::{
     bytes::StreamBytes,
     convert::{Converted, Options, SQUARE},
@@ -64,7 +65,7 @@ pub(crate) struct Arguments {
     shader: Option<Shader>,
     /// Board that shall draw the stream. The command fails if the firmware of this board cannot draw it, for example because it lacks the method or has
     /// no room for the materials.
-    #[arg(long, value_name = "NAME", value_parser = BOARDS.map(|board| board.name))]
+    #[arg(long, value_name = "NAME", value_parser = Board::ALL.map(Board::name))]
     board: Option<String>,
     /// Pixel format of the display. The default is the format of --board, or else rgb565. In formats of one bit and of up to 16 greys a mesh without
     /// materials is white on black.
@@ -195,19 +196,19 @@ pub(crate) fn run(arguments: &Arguments) -> Result<Outcome> {
             Usage(format!("{} is already a stream; name an .obj, .stl, .ply, .gltf, .glb, .3mf or .toml file", source.display())).into()
         );
     }
-    let board = arguments.board.as_deref().and_then(Board::named);
+    let board = Board::ALL.into_iter().find(|board| arguments.board.as_deref() == Some(board.name()));
     let shader = arguments.shader.unwrap_or(Shader::AUTO);
-    if let Some(has) = board.as_ref().and_then(|board| board.lacks(shader)) {
+    if let Some(has) = board.and_then(|board| boards::lacks(board, shader)) {
         return Err(Usage(format!("{has}: use one of them as --shader")).into());
     }
-    let format = arguments.format.or(board.as_ref().map(|board| board.format)).unwrap_or(Format::Rgb565);
+    let format = arguments.format.or(board.map(|board| board.format().of_pixels())).unwrap_or(Format::Rgb565);
     let options = mesh_options::or_default(arguments.options.as_ref(), format)?;
     let counter = arguments.count.then(|| count::prepare(arguments.board.as_deref())).transpose()?;
     let target = arguments.output.clone().unwrap_or_else(|| source.with_extension("tri"));
     if scene::is_script(source) {
-        return convert_script(arguments, (board.as_ref(), format), &target, counter.as_ref());
+        return convert_script(arguments, (board, format), &target, counter.as_ref());
     }
-    let picture = Picture::new(arguments.size, board.as_ref(), format);
+    let picture = Picture::new(arguments.size, board, format);
     let bars = Bars::default();
     let options = Options { size: arguments.size.unwrap_or(SQUARE), ..options };
     let mut converted = Converted::read(source, &options, &bars)?;
@@ -215,13 +216,16 @@ pub(crate) fn run(arguments: &Arguments) -> Result<Outcome> {
     converted.look.shader = shader;
     let bytes = converted.stream().and_then(|bytes| arguments.outlined(bytes)).with_context(|| source.display().to_string())?;
     let stream = bytes.view()?;
-    if let Some(board) = &board
-        && let Err(refused) = board.check(&stream)
+    if let Some(board) = board
+        && let Err(refused) = boards::check(board, &stream)
     {
-        let load = |bytes: StreamBytes| Ok(board.load(&arguments.outlined(bytes)?.parse()?));
+        let load = |bytes: StreamBytes| Ok(boards::load(board, &arguments.outlined(bytes)?.parse()?));
         let is_too_large = refused.is::<TooLarge>();
-        let remedy =
-            if is_too_large { Remedy::search((&converted, &options), board.name, (board.load(&stream), &load), &bars)? } else { None };
+        let remedy = if is_too_large {
+            Remedy::search((&converted, &options), board.name(), (boards::load(board, &stream), &load), &bars)?
+        } else {
+            None
+        };
         let refused = match remedy {
             Some(remedy) => anyhow!("{refused}; {}", remedy.text()),
             None => refused,
@@ -336,7 +340,7 @@ struct SceneLine<'a> {
 /// Writes the stream of a scripted scene.
 fn convert_script(
     arguments: &Arguments,
-    (board, format): (Option<&Board>, Format),
+    (board, format): (Option<Board>, Format),
     target: &Path,
     counter: Option<&Counter>,
 ) -> Result<Outcome> {
@@ -353,10 +357,10 @@ fn convert_script(
     scene.stream = arguments.outlined(scene.stream)?;
     let stream = scene.stream.parse()?;
     if let Some(board) = board {
-        if let Some(has) = board.lacks(Shader::of(&stream)?) {
+        if let Some(has) = boards::lacks(board, Shader::of(&stream)?) {
             bail!("{}: {has}: use one of them as `shader` in the text of the scene", arguments.mesh.display());
         }
-        board.check(&stream).with_context(|| arguments.mesh.display().to_string())?;
+        boards::check(board, &stream).with_context(|| arguments.mesh.display().to_string())?;
     }
     report::leave_to(target);
     output::write(target, scene.stream.as_bytes())?;

@@ -1,9 +1,9 @@
 //! The program that draws a mesh, the common chips that have room for it, and how far the mesh must be simplified otherwise.
 
-use super::boards::Board;
 use anyhow::{Context, Result};
 use embedded_graphics_core::geometry::Size;
 use microphong::{Layout, Stream, format::GeometricError};
+use microphong_render::board::Board;
 use microphong_sim::{
     bytes::StreamBytes,
     chip::Chip,
@@ -34,8 +34,8 @@ pub(super) struct Picture {
 
 impl Picture {
     /// The picture of this size, or else of this board, or else of the commonest display.
-    pub(super) fn new(size: Option<(u32, u32)>, board: Option<&Board>, format: Format) -> Self {
-        let (its_size, rows) = board.map_or((USUAL, ROWS), Board::picture);
+    pub(super) fn new(size: Option<(u32, u32)>, board: Option<Board>, format: Format) -> Self {
+        let (its_size, rows) = board.map_or((USUAL, ROWS), |board| (board.size(), board.budget().layout.rows as u32));
         Self { size: size.unwrap_or(its_size), rows, format }
     }
 

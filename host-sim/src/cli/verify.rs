@@ -24,8 +24,7 @@ pub(crate) struct Arguments {
     /// .tri, .obj, .stl, .ply, .gltf, .glb, .3mf and .toml files, names of built-in scenes, or `all` for every built-in scene.
     #[arg(value_name = "SCENE", default_value = "teapot")]
     scenes: Vec<String>,
-    /// Boards, separated by commas: pico, lm3s6965evb, mps2-an385, mps2-an386; or all.
-    #[arg(long, value_parser = boards)]
+    #[arg(long, value_parser = boards, help = format!("Boards, separated by commas: {}; or all", Board::names(Board::ALL)))]
     board: Several<Board>,
     /// Shading methods, separated by commas, or `all` for every method of the firmware.
     #[arg(long, default_value = "all", value_parser = parse::SeveralShaders)]
@@ -34,8 +33,7 @@ pub(crate) struct Arguments {
     /// budget of the scene. If it has none, the pixel format decides: 1 for 8 bits a channel, 4 for 5 or 6 bits, and 8 for fewer.
     #[arg(long, value_name = "LSB", value_parser = parse::budget)]
     budget: Option<ErrorBudget>,
-    /// Draw smooth outlines, on boards that have the memory for them: mps2-an385, mps2-an386.
-    #[arg(long)]
+    #[arg(long, help = format!("Draw smooth outlines, on boards that have the memory for them: {}", Board::names(smooth())))]
     antialias: bool,
     /// Number of frames to compare, starting with the first.
     #[arg(long, default_value_t = 3, value_parser = clap::value_parser!(u16).range(1..))]
@@ -57,6 +55,11 @@ Examples:
   microphong verify teapot board --board mps2-an385 --antialias
 
 Exit codes: 0 all pixels are equal; 1 some pixels differ, or a board failed; 2 wrong usage.";
+
+/// Boards that have the memory for smooth outlines.
+fn smooth() -> impl Iterator<Item = Board> {
+    Board::ALL.into_iter().filter(|board| board.smooths())
+}
 
 /// Boards by name.
 fn boards(text: &str) -> Result<Several<Board>, String> {

@@ -16,7 +16,6 @@ use anyhow::{Context, Result, anyhow, bail, ensure};
 use qmp::Qmp;
 use screen::Screen;
 use std::{
-    fmt,
     io::{self, ErrorKind, Read, Write},
     process::{Child, ChildStdin, ChildStdout, Command, Stdio},
     sync::mpsc::{self, Receiver, RecvTimeoutError},
@@ -31,42 +30,45 @@ const END: Duration = Duration::from_secs(20);
 /// The exit code that the firmware's fault handler chooses.
 const PANIC: i32 = 101;
 
-/// A machine that QEMU emulates.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub enum Machine {
-    /// A board with a Cortex-M processor, by the name that QEMU and this program have for it.
-    Arm(&'static str),
-    /// A RISC-V processor of 32 bits with memory and little else.
-    RiscvVirt,
+/// A board as QEMU emulates it.
+#[derive(Clone, Copy, Debug)]
+struct Machine {
+    /// The program that emulates it.
+    emulator: &'static str,
+    /// The package of Debian that has the program.
+    package: &'static str,
+    /// QEMU's name of it.
+    name: &'static str,
+    /// More arguments.
+    arguments: &'static [&'static str],
 }
 
-impl fmt::Display for Machine {
-    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
-        f.write_str(match self {
-            Self::Arm(name) => name,
-            Self::RiscvVirt => "riscv-virt",
-        })
-    }
+/// Checks that the emulator of `board` is installed, before a program is compiled for it.
+///
+/// # Errors
+/// Says what to install.
+pub fn check(board: Board) -> Result<()> {
+    let machine = Machine::of(board);
+    let version = Command::new(machine.emulator).arg("--version").stdin(Stdio::null()).output();
+    version.map(drop).map_err(|error| machine.missing(error))
 }
 
 impl Machine {
-    /// The program that emulates it, and the package of Debian that has the program.
-    const fn emulator(self) -> [&'static str; 2] {
-        match self {
-            Self::Arm(_) => ["qemu-system-arm"; 2],
-            Self::RiscvVirt => ["qemu-system-riscv32", "qemu-system-misc"],
+    const fn of(board: Board) -> Self {
+        match board {
+            Board::RiscvVirt => {
+                Self { emulator: "qemu-system-riscv32", package: "qemu-system-misc", name: "virt", arguments: &["-bios", "none"] }
+            }
+            _ => Self { emulator: "qemu-system-arm", package: "qemu-system-arm", name: board.name(), arguments: &[] },
         }
     }
 
     /// The command that runs `program`, without anything that looks at it.
     fn command(self, program: &Scratch) -> Command {
-        let [emulator, _] = self.emulator();
-        let mut command = Command::new(emulator);
-        match self {
-            Self::Arm(name) => command.args(["-M", name]),
-            Self::RiscvVirt => command.args(["-M", "virt", "-bios", "none"]),
-        };
+        let mut command = Command::new(self.emulator);
         bound(&mut command)
+            .args(["-M", self.name])
+            .args(self.arguments)
             .args(["-display", "none", "-nodefaults", "-nic", "none", "-serial", "none", "-monitor", "none"])
             .args(["-chardev", "stdio,id=host,signal=off", "-semihosting-config", "enable=on,target=native,chardev=host"])
             .arg("-kernel")
@@ -74,19 +76,9 @@ impl Machine {
         command
     }
 
-    /// Checks that its emulator is installed, before a program is compiled for it.
-    ///
-    /// # Errors
-    /// Says what to install.
-    pub fn check(self) -> Result<()> {
-        let [emulator, _] = self.emulator();
-        let version = Command::new(emulator).arg("--version").stdin(Stdio::null()).output();
-        version.map(drop).map_err(|error| self.missing(error))
-    }
-
     /// Why QEMU has not started.
     fn missing(self, error: io::Error) -> anyhow::Error {
-        let [emulator, package] = self.emulator();
+        let Self { emulator, package, .. } = self;
         match error.kind() {
             ErrorKind::NotFound => anyhow!("{emulator} is not installed; `apt-get install -y --no-install-recommends {package}`"),
             _ => anyhow!("cannot start {emulator}: {error}"),
@@ -179,7 +171,7 @@ pub(super) fn run(board: Board, elf: &Elf, until: Until) -> Result<Recording> {
     let screen = Screen::of(board, elf)?;
 
     let mut recording = Recording::default();
-    let machine = Machine::Arm(board.name());
+    let machine = Machine::of(board);
     let mut command = machine.command(&program);
     let qmp = Qmp::new(&mut command)?;
     let mut emulator = Emulator::start(machine, command, decoder(elf)?)?;
@@ -198,7 +190,7 @@ pub const INSTRUCTIONS_PER_TICK: f64 = 40.0 / 256.0;
 /// When the program crashes, falls silent or fails.
 pub fn clocked(board: Board, elf: &Elf, pauses: u16) -> Result<Vec<String>> {
     let program = Scratch::new(elf.bytes())?;
-    let machine = Machine::Arm(board.name());
+    let machine = Machine::of(board);
     let mut command = machine.command(&program);
     command.args(["-icount", "shift=8,sleep=off"]);
     let mut emulator = Emulator::start(machine, command, decoder(elf)?)?;
@@ -220,13 +212,14 @@ const DEEPEST: u32 = 1 << 18;
 /// The paint. Start-up code that paints the stack as well uses this value.
 const PAINT: u8 = 0xCC;
 
-/// Runs a program of the package `size` on a machine until all frames are drawn, and returns the bytes of stack that have lost their paint.
+/// Runs a program of the package `size` on a board until all frames are drawn, and returns the bytes of stack that have lost their paint.
 ///
 /// # Errors
 /// When the program cannot draw its stream, crashes or falls silent.
-pub fn stack(machine: Machine, elf: &Elf) -> Result<u64> {
+pub fn stack(board: Board, elf: &Elf) -> Result<u64> {
     let (program, paint) = (Scratch::new(elf.bytes())?, Scratch::new(&[PAINT; DEEPEST as usize])?);
     let bottom = elf.symbol("_stack_start")?.0 - DEEPEST;
+    let machine = Machine::of(board);
     let mut command = machine.command(&program);
     command.args(["-device", &format!("loader,file={},addr={bottom:#x},force-raw=on", paint.path().display())]);
     let mut qmp = Qmp::new(&mut command)?;
@@ -235,13 +228,13 @@ pub fn stack(machine: Machine, elf: &Elf) -> Result<u64> {
     qmp.greet()?;
     match emulator.line()?.as_deref() {
         Some("d") => {}
-        Some(_) => bail!("the program on {machine} cannot draw the scene"),
-        None => bail!("QEMU has ended before the program on {machine}"),
+        Some(_) => bail!("the program on {board} cannot draw the scene"),
+        None => bail!("QEMU has ended before the program on {board}"),
     }
     let bytes = qmp.memory(bottom, DEEPEST)?;
     // A word that has lost only some of its paint counts as a whole.
     let clean = bytes.iter().take_while(|&&byte| byte == PAINT).count() / size_of::<u32>() * size_of::<u32>();
-    ensure!(clean > 0, "the stack of the program on {machine} is deeper than {DEEPEST} bytes");
+    ensure!(clean > 0, "the stack of the program on {board} is deeper than {DEEPEST} bytes");
     Ok(u64::from(DEEPEST) - clean as u64)
 }
 

@@ -45,7 +45,7 @@ pub fn trace(board: Board, elf: &Elf, ranges: &[Range<u32>], blocks: Blocks, vis
         let separator = if filter.is_empty() { "" } else { "," };
         write!(filter, "{separator}{:#x}..{:#x}", range.start, range.end - 1)?;
     }
-    let machine = Machine::Arm(board.name());
+    let machine = Machine::of(board);
     let process = machine
         .command(&program)
         // The log goes to the standard error output. Blocks that lead to others by themselves would not be in it.

@@ -1,0 +1,5 @@
+//! Arm MPS2 with a Cortex-M33 (AN505): the picture lies in memory.
+#![no_std]
+#![no_main]
+
+microphong_firmware::framebuffer_board!(::microphong_firmware::shaders::every());
