@@ -4,6 +4,7 @@
 use crate::golden::{bless, root};
 use embedded_graphics::pixelcolor::{Gray8, Rgb565};
 use microphong::{Layout, pixel::Pixel};
+use microphong_sim::board::Board;
 use std::{
     fs,
     path::{Path, PathBuf},
@@ -184,6 +185,52 @@ fn costs_are_those_that_are_recorded() {
             assert!((flash - expected).abs() < if base > 0.0 { 1.0 } else { 0.6 }, "{document}: {method}: {expected:.1} KB of flash");
         }
         assert_eq!(found, methods, "{document}: methods");
+    }
+}
+
+/// The README and the guide have a row for each board. Costs in it are those of `tests/baselines/costs.csv`: of the teapot in thousands of instructions,
+/// and of `peer-sphere-plastic` in instructions per pixel.
+#[test]
+fn boards_are_those_that_there_are() {
+    /// Pixels of `peer-sphere-plastic` on each board.
+    const PIXELS: f64 = 43_813.0;
+    let recorded = read(&root().join("baselines/costs.csv"));
+    let cost = |board: Board, scene: &str, method: &str| {
+        let start = format!("{board},{scene},{method},");
+        let row = recorded.lines().find_map(|line| line.strip_prefix(&start))?;
+        Some(row.split(',').next().expect("instructions").parse::<f64>().expect("a figure"))
+    };
+    let teapot: &[_] = &["gouraud", "auto", "phong"];
+    let sphere: &[_] = &["flat", "gouraud", "six-point", "sqrt6", "phong"];
+    // The cell with the figures, or the first of them; what they are of, and what they count.
+    let tables = [
+        ("README.md", "## Boards", 4, "teapot", teapot, 1000.0),
+        ("docs/guide/boards.md", "# Boards", 0, "", &[], 1.0),
+        ("docs/guide/boards.md", "## Costs", 3, "peer-sphere-plastic", sphere, PIXELS),
+    ];
+    for (document, heading, first, scene, methods, unit) in tables {
+        let text = read(&repository().join(document));
+        let section = text.lines().skip_while(|&line| line != heading).skip(1).take_while(|line| !line.starts_with("## "));
+        let rows: Vec<_> = section.filter(|line| line.starts_with("| `")).collect();
+        for board in Board::ALL {
+            let recorded: Vec<_> = methods.iter().filter_map(|method| cost(board, scene, method)).collect();
+            let is_its = |row: &&&str| row.split('|').nth(1).is_some_and(|names| names.contains(&format!("`{board}`")));
+            let Some(row) = rows.iter().find(is_its) else {
+                // A table of costs has the boards whose instructions are counted.
+                assert!(!methods.is_empty() && recorded.is_empty(), "{document}, {heading}: no row of {board}");
+                continue;
+            };
+            let cells = row.split('|').skip(first).flat_map(|cell| cell.split(','));
+            let told: Vec<_> = cells.filter_map(|cell| cell.trim().parse::<f64>().ok()).take(methods.len()).collect();
+            assert_eq!(told.len(), recorded.len(), "{document}, {heading}: {row}");
+            for (told, recorded) in told.iter().zip(&recorded) {
+                assert!(
+                    (told * unit / recorded - 1.0).abs() < 0.01,
+                    "{document}, {heading}: {board}: {:.2} and not {told}",
+                    recorded / unit
+                );
+            }
+        }
     }
 }
 
