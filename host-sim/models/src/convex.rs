@@ -63,14 +63,17 @@ fn surrounds(faces: &[Face]) -> bool {
 /// Under which the origin sees a triangle; positive if it sees its back. Van Oosterom and Strackee, 1983, equation 8.
 fn solid_angle([a, b, c]: [V3; 3]) -> f64 {
     let [x, y, z] = [a, b, c].map(length);
-    2.0 * dot(a, cross(b, c)).atan2(x * y * z + dot(a, b) * z + dot(b, c) * x + dot(c, a) * y)
+    2.0 * libm::atan2(dot(a, cross(b, c)), x * y * z + dot(a, b) * z + dot(b, c) * x + dot(c, a) * y)
 }
 
 /// Rounding has turned no plane by more than 2^-[`LEAN`] rad.
 fn leans_little(faces: &[Face], vertices: &[Vertex], triangles: &[Triangle]) -> bool {
     let rounded = triangles.iter().map(|t| normal(t.corners.map(|v| records::position(&vertices[usize::from(v)]).map(f64::from))));
     faces.len() == triangles.len()
-        && faces.iter().zip(rounded).all(|(face, rounded)| rounded.is_some_and(|n| length(sub(n, face.normal)) < (-f64::from(LEAN)).exp2()))
+        && faces
+            .iter()
+            .zip(rounded)
+            .all(|(face, rounded)| rounded.is_some_and(|n| length(sub(n, face.normal)) < libm::exp2(-f64::from(LEAN))))
 }
 
 /// Whether all corners lie below all planes.

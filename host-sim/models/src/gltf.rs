@@ -357,7 +357,7 @@ fn places_of(info: &Info<'_>) -> u32 {
 fn transform_of(info: &Info<'_>) -> [[f64; 3]; 2] {
     let Some(transform) = info.texture_transform() else { return [[1.0, 0.0, 0.0], [0.0, 1.0, 0.0]] };
     let ([x, y], [width, height]) = (transform.offset().map(f64::from), transform.scale().map(f64::from));
-    let (sin, cos) = f64::from(transform.rotation()).sin_cos();
+    let (sin, cos) = libm::sincos(f64::from(transform.rotation()));
     [[cos * width, sin * height, x], [-sin * width, cos * height, y]]
 }
 

@@ -467,7 +467,7 @@ fn light(lamp: &Lamp) -> Light {
     let mut light = Light::new(kind, space, vector.map(nearest), lamp.colour.map(gain));
     light.range = lamp.range.map_or(0, |range| nearest::<Reach>(range).to_bits());
     if let Some(cone) = lamp.cone {
-        let [edge, full] = [cone.edge, cone.full].map(|angle| nearest::<Unit>(angle.to_radians().cos()).to_bits());
+        let [edge, full] = [cone.edge, cone.full].map(|angle| nearest::<Unit>(libm::cos(angle.to_radians())).to_bits());
         light.axis = unit(cone.axis).unwrap_or(KEY).map(|c| nearest::<Unit>(c).to_bits());
         let edge = edge.min((1 << UNIT) - LEAST_SOFTNESS);
         light.cone = [edge, full.max(edge + LEAST_SOFTNESS)];

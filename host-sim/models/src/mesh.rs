@@ -491,7 +491,7 @@ fn smooth(soup: &Soup, positions: &[V3], places: &[usize], crease: f64) -> (Draf
 /// Takes the first corner out of the corners around a position, and all to which light is smooth from it, directly or over others, in their order.
 fn sheet(soup: &Soup, left: &mut Vec<Around>, crease: f64) -> Vec<Around> {
     // Less what rounding may take from the angle itself.
-    let least = if crease < 180.0 { crease.to_radians().cos() - 1e-9 } else { f64::NEG_INFINITY };
+    let least = if crease < 180.0 { libm::cos(crease.to_radians()) - 1e-9 } else { f64::NEG_INFINITY };
     let smooth = |&(a, _, one): &Around, &(b, _, other): &Around| match (soup.faces[a].smoothing, soup.faces[b].smoothing) {
         (Smoothing::ByAngle, Smoothing::ByAngle) => one.zip(other).map_or(0.0, |(one, other)| dot(one, other)) >= least,
         (Smoothing::Group(one), Smoothing::Group(other)) => one == other,

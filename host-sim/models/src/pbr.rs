@@ -101,7 +101,7 @@ fn exponent(roughness: f64) -> f64 {
 
 /// Linear light as sRGB has it.
 pub(crate) fn encoded(linear: V3) -> V3 {
-    linear.map(|c| if c <= 0.003_130_8 { 12.92 * c } else { 1.055 * c.powf(1.0 / 2.4) - 0.055 })
+    linear.map(|c| if c <= 0.003_130_8 { 12.92 * c } else { 1.055 * libm::pow(c, 1.0 / 2.4) - 0.055 })
 }
 
 #[cfg(test)]

@@ -79,7 +79,7 @@ fn is_convex(points: &[[f64; 2]]) -> bool {
     let edge = |a: [f64; 2], b: [f64; 2]| [b[0] - a[0], b[1] - a[1]];
     let next = points.iter().cycle().skip(1);
     let edges: Vec<_> = points.iter().zip(next).map(|(&a, &b)| edge(a, b)).filter(|&edge| edge != [0.0; 2]).collect();
-    let turn = |([a, b], [c, d]): ([f64; 2], [f64; 2])| (a * d - b * c).atan2(a * c + b * d);
+    let turn = |([a, b], [c, d]): ([f64; 2], [f64; 2])| libm::atan2(a * d - b * c, a * c + b * d);
     let turns: Vec<_> = edges.iter().copied().zip(edges.iter().copied().cycle().skip(1)).map(turn).collect();
     turns.iter().all(|&turn| (STRAIGHT..PI - STRAIGHT).contains(&turn)) && turns.iter().sum::<f64>() < 3.0 * PI
 }
@@ -117,8 +117,8 @@ mod tests {
 
     #[test]
     fn crossed_outlines_are_known() {
-        let star: Vec<_> = (0..5).map(|k| (f64::from(k) * 2.0 * TAU / 5.0).sin_cos().into()).collect();
-        let twice: Vec<_> = (0..7).map(|k| (f64::from(k) * 2.0 * TAU / 7.0).sin_cos().into()).collect();
+        let star: Vec<_> = (0..5).map(|k| libm::sincos(f64::from(k) * 2.0 * TAU / 5.0).into()).collect();
+        let twice: Vec<_> = (0..7).map(|k| libm::sincos(f64::from(k) * 2.0 * TAU / 7.0).into()).collect();
         let bow_tie = [[0.0, 0.0], [1.0, 1.0], [1.0, 0.0], [0.0, 1.0]];
         let uneven = [[0.0, 0.0], [2.0, 2.0], [2.0, 0.0], [0.0, 1.0]];
         for points in [&star[..], &twice, &bow_tie, &uneven] {
@@ -136,7 +136,7 @@ mod tests {
             let mut angle: f64 = 0.0;
             let place = |(turn, distance): (f64, f64)| {
                 angle += turn / all * TAU;
-                [angle.cos() * distance, angle.sin() * distance]
+                [libm::cos(angle) * distance, libm::sin(angle) * distance]
             };
             corners.into_iter().map(place).collect()
         })

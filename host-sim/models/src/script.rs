@@ -436,7 +436,7 @@ fn camera(mut table: Table<'_>, cast: &mut Cast) -> Result<View> {
         axis: UP,
         period: 0,
         projection: Projection::Perspective,
-        focal: 1.0 / (view.to_radians() / 2.0).tan(),
+        focal: 1.0 / libm::tan(view.to_radians() / 2.0),
         near,
         far: 32.0,
     })

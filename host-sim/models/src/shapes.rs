@@ -13,9 +13,9 @@ use std::f64::consts::{PI, TAU};
 pub fn sphere(meridians: usize, bands: usize, phase: f64) -> Mesh {
     let mut positions = vec![[0.0, 0.0, 1.0]];
     for i in 1..bands {
-        let (s, c) = (PI * i as f64 / bands as f64).sin_cos();
+        let (s, c) = libm::sincos(PI * i as f64 / bands as f64);
         positions.extend((0..meridians).map(|j| {
-            let (y, x) = (phase + TAU * j as f64 / meridians as f64).sin_cos();
+            let (y, x) = libm::sincos(phase + TAU * j as f64 / meridians as f64);
             [s * x, s * y, c]
         }));
     }
@@ -48,8 +48,8 @@ pub fn ring(around: usize, across: usize, tube: f64) -> Mesh {
     let mut mesh = Mesh::default();
     for i in 0..around {
         for j in 0..across {
-            let (sa, ca) = (TAU * i as f64 / around as f64).sin_cos();
-            let (sb, cb) = (TAU * j as f64 / across as f64).sin_cos();
+            let (sa, ca) = libm::sincos(TAU * i as f64 / around as f64);
+            let (sb, cb) = libm::sincos(TAU * j as f64 / across as f64);
             let normal = [ca * cb, sa * cb, sb];
             mesh.normals.push(normal);
             mesh.positions.push(scale(add([ca, sa, 0.0], scale(normal, tube)), 1.0 / (1.0 + tube)));
@@ -81,8 +81,10 @@ pub fn dodecahedron() -> Mesh {
         let start = positions[corners[0]];
         let side = cross(centre, start);
         let angle = |c: usize| {
-            dot(positions[c], side)
-                .atan2(dot(positions[c], sub(start, scale(centre, dot(start, centre) / dot(centre, centre)))) * dot(centre, centre).sqrt())
+            libm::atan2(
+                dot(positions[c], side),
+                dot(positions[c], sub(start, scale(centre, dot(start, centre) / dot(centre, centre)))) * dot(centre, centre).sqrt(),
+            )
         };
         corners.sort_by(|&a, &b| angle(a).total_cmp(&angle(b)));
         triangles.extend((1..4).map(|k| [corners[0], corners[k], corners[k + 1]]));
@@ -152,7 +154,7 @@ pub fn cuboid() -> Mesh {
 pub fn cylinder(around: usize) -> Mesh {
     let mut mesh = Mesh::default();
     let round = |j: usize| {
-        let (y, x) = (TAU * (j % around) as f64 / around as f64).sin_cos();
+        let (y, x) = libm::sincos(TAU * (j % around) as f64 / around as f64);
         [x, y]
     };
     for j in 0..around {

@@ -137,12 +137,12 @@ fn off(from: &Key, to: &Key, key: &Key) -> f64 {
     let share = f64::from(key.frame - from.frame) / f64::from(to.frame - from.frame);
     let chord: [f64; 4] = [0, 1, 2, 3].map(|k| from_rotation[k] * (1.0 - share) + to_rotation[k] * share * cosine.signum());
     let cosine = product(chord, wanted).abs() / product(chord, chord).sqrt();
-    2.0 * cosine.min(1.0).acos().to_degrees()
+    2.0 * libm::acos(cosine.min(1.0)).to_degrees()
 }
 
 /// The quaternion of a rotation about a unit axis.
 fn about([x, y, z]: V3, degrees: f64) -> [f64; 4] {
-    let (sin, cos) = (degrees.to_radians() / 2.0).sin_cos();
+    let (sin, cos) = libm::sincos(degrees.to_radians() / 2.0);
     [cos, x * sin, y * sin, z * sin]
 }
 

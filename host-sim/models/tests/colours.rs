@@ -166,8 +166,9 @@ fn colours_of_vertices_are_those_of_corners() {
     }
     faces.iter().for_each(|face| writeln!(obj, "f {}", words(face.map(|k| k + 1))).unwrap());
     faces.iter().for_each(|face| writeln!(ply, "3 {}", words(*face)).unwrap());
-    let linear =
-        |c: i32| ((f64::from(c) / 255.0 + 0.055) / 1.055).powf(2.4).max(f64::from(c) / 255.0 / 12.92 * f64::from(u8::from(c < 11))) as f32;
+    let linear = |c: i32| {
+        libm::pow((f64::from(c) / 255.0 + 0.055) / 1.055, 2.4).max(f64::from(c) / 255.0 / 12.92 * f64::from(u8::from(c < 11))) as f32
+    };
     let floats = |lists: [[f32; 3]; 4]| lists.as_flattened().iter().flat_map(|c| c.to_le_bytes()).collect::<Vec<u8>>();
     let bytes = [
         floats(positions.map(|p| p.map(|c| c as f32))),
@@ -280,7 +281,7 @@ fn many_colours_have_the_nearest_palettes() {
     let imported = colourful(|[x, y, z]| [0.5 + 0.2 * x, 0.5 + 0.2 * y, 0.4 + 0.1 * z]);
     let painted = imported.painted;
     assert!(painted.palettes == 1 && painted.colours == 256 && painted.far == 0 && painted.rms < 3.0, "{painted:?}");
-    let imported = colourful(|[x, y, z]| [x, y, z].map(|c| 0.5 + 0.5 * (9.0 * c + 3.0 * x * y).sin()));
+    let imported = colourful(|[x, y, z]| [x, y, z].map(|c| 0.5 + 0.5 * libm::sin(9.0 * c + 3.0 * x * y)));
     let painted = imported.painted;
     assert!(painted.palettes > 1 && painted.palettes <= 8 && painted.rms < 6.0, "{painted:?}");
     let (parts, _) = quantise(&imported.mesh);

@@ -321,7 +321,8 @@ fn creases_divide_normals() {
     }
     // A pyramid of 24 sides, each of which folds by 11 degrees over its neighbours and by 135 over the base. Its tip is smooth, although what lies
     // opposite folds by 90.
-    let rim: String = (0..24).map(|k| f64::from(k) * 0.261_799_387_799).map(|a| format!("v {} {} 0\n", a.cos(), a.sin())).collect();
+    let rim: String =
+        (0..24).map(|k| f64::from(k) * 0.261_799_387_799).map(|a| format!("v {} {} 0\n", libm::cos(a), libm::sin(a))).collect();
     let sides: String = (0..24).map(|k| format!("f {} {} 25\n", k + 1, (k + 1) % 24 + 1)).collect();
     let base: String = (1..=24).rev().map(|k| format!(" {k}")).collect();
     let pyramid = format!("{rim}v 0 0 1\n{sides}f{base}\n");

@@ -66,7 +66,7 @@ pub fn apply(rows: &[V3; 3], v: V3) -> V3 {
 /// Rows of the rotation by `angle` about the unit vector `axis`, counter-clockwise seen against the axis.
 #[must_use]
 pub fn rotation(axis: V3, angle: f64) -> [V3; 3] {
-    let (s, c) = angle.sin_cos();
+    let (s, c) = libm::sincos(angle);
     let [x, y, z] = axis;
     let d = 1.0 - c;
     [

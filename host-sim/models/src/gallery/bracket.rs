@@ -51,7 +51,7 @@ fn pierced(edge: impl Fn(Point) -> Point, bore: f64, thick: f64) -> Solid {
 /// The sleeve of the bearing, with a fillet where it leaves the plate.
 fn flange() -> Solid {
     let fillet = (0..=4).map(|k| {
-        let (s, c) = (22.5 * f64::from(k)).to_radians().sin_cos();
+        let (s, c) = libm::sincos((22.5 * f64::from(k)).to_radians());
         [0.5 - 0.1 * s, 0.09 + 0.1 - 0.1 * c]
     });
     let outer = [[0.5, -0.05]].into_iter().chain(fillet).chain([[0.4, 0.42], [0.38, 0.44]]);

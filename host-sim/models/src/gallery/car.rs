@@ -71,8 +71,8 @@ fn wheel(z: f64) -> Solid {
     let disc = |profile: &[[f64; 2]], sides: usize| Solid::lathe(profile, sides).turned(2, -90.0);
     let tyre = disc(&[[0.0, -0.1], [0.2, -0.1], [0.24, -0.06], [0.24, 0.05], [0.2, 0.08], [0.0, 0.06]], 12).smooth().of(RUBBER);
     let rim = disc(&[[0.0, 0.0], [0.15, 0.06], [0.13, 0.09], [0.05, 0.075], [0.0, 0.1]], 10).glossy();
-    let rim =
-        rim.painted(|at| if at.middle[1].hypot(at.middle[2]) < 0.06 { hex(0xf7_efdc) } else { ramp(&CHROME, 0.5 + 3.0 * at.point[1]) });
+    let rim = rim
+        .painted(|at| if libm::hypot(at.middle[1], at.middle[2]) < 0.06 { hex(0xf7_efdc) } else { ramp(&CHROME, 0.5 + 3.0 * at.point[1]) });
     let arch = disc(&[[0.285, -0.2], [0.285, 0.05]], 12).of(0x1a_3338);
     arch.at([0.0, 0.03, 0.0]).with(tyre.with(rim).at([0.04, 0.0, 0.0])).at([0.52, 0.24, z])
 }

@@ -59,7 +59,7 @@ fn garden() -> Solid {
     let flag = |k: i32| {
         let k = f64::from(k);
         let slab = Solid::lathe(&[[0.14, -0.05], [0.12, 0.035]], 5).turned(1, 40.0 * k).faceted();
-        slab.at([-0.28 + 0.03 * (2.3 * k).sin(), 0.0, 0.52 + 0.23 * k]).of([0xb9_b2a6, 0xc9_c3b6, 0xad_a69b][k as usize % 3])
+        slab.at([-0.28 + 0.03 * libm::sin(2.3 * k), 0.0, 0.52 + 0.23 * k]).of([0xb9_b2a6, 0xc9_c3b6, 0xad_a69b][k as usize % 3])
     };
     let trunk = Solid::tube(&[([0.0, -0.05, 0.0], 0.09), ([0.0, 0.62, 0.02], 0.05)], 5).graded(1, &[0x4f_3423, 0x86_5c3c]);
     let green: [u32; 3] = [0x2f_6b3a, 0x5f_a345, 0xa9_cf5c];
@@ -71,7 +71,7 @@ fn garden() -> Solid {
     let flower = |k: i32| {
         let colours = [0xf2_5f5c, 0xff_e066, 0xf7_f7ff, 0xb5_6bd1];
         let k = f64::from(k);
-        let at = [-0.72 + 0.13 * (k % 3.0), 0.0, 0.56 + 0.12 * (k / 3.0).floor() + 0.05 * (k * 2.0).sin()];
+        let at = [-0.72 + 0.13 * (k % 3.0), 0.0, 0.56 + 0.12 * (k / 3.0).floor() + 0.05 * libm::sin(k * 2.0)];
         sprout(0.12, [0.05, 0.04], [0x4f_8b3c, colours[k as usize % 4]]).at(at)
     };
     let stones = stone([0.15, 0.1, 0.13], 1.0).at([0.98, 0.02, 0.42]);

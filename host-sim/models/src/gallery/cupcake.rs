@@ -20,9 +20,9 @@ fn plate() -> Solid {
 fn cup() -> Solid {
     const PLEATS: usize = 20;
     let pleated = |[x, y, z]: V3| {
-        let pleat = (x.atan2(z) / TAU * 2.0 * PLEATS as f64).round() as i64;
+        let pleat = (libm::atan2(x, z) / TAU * 2.0 * PLEATS as f64).round() as i64;
         let out = if pleat % 2 == 0 { 1.0 } else { 0.93 };
-        if y > 0.55 && x.hypot(z) < 0.6 { [x, y, z] } else { [out * x, y, out * z] }
+        if y > 0.55 && libm::hypot(x, z) < 0.6 { [x, y, z] } else { [out * x, y, out * z] }
     };
     let colour = |at: At| {
         let pleat = (reach(at.point) / (0.46 + 0.31 * (at.point[1] + 0.05)) - 0.93) / 0.07;
@@ -37,9 +37,9 @@ fn cup() -> Solid {
 /// The middle of the strand of icing at a place from its lower end to its tip, and its radius.
 fn strand(place: f64) -> (V3, f64) {
     let turn = 3.4 * TAU * place;
-    let out = 0.5 * (1.0 - place).powf(0.8);
+    let out = 0.5 * libm::pow(1.0 - place, 0.8);
     let radius = 0.215 * (1.0 - 0.72 * place) * (24.0 * place).clamp(0.01, 1.0).sqrt();
-    ([out * turn.sin(), 0.78 + 0.52 * place.powf(0.9), out * turn.cos()], radius)
+    ([out * libm::sin(turn), 0.78 + 0.52 * libm::pow(place, 0.9), out * libm::cos(turn)], radius)
 }
 
 fn icing() -> Solid {
@@ -60,7 +60,7 @@ fn sprinkles() -> Solid {
         let (centre, radius) = strand(place);
         let outward = scale([centre[0], 0.0, centre[2]], 1.0 / reach(centre));
         let lean = (10.0 + 60.0 * random(2.0)).to_radians();
-        let normal = add(scale(outward, lean.cos()), [0.0, lean.sin(), 0.0]);
+        let normal = add(scale(outward, libm::cos(lean)), [0.0, libm::sin(lean), 0.0]);
         let along = [4.0, 5.0, 6.0].map(|salt| random(salt) - 0.5);
         let rod = Solid::lathe(&[[0.0, -0.055], [0.022, -0.04], [0.022, 0.04], [0.0, 0.055]], 4).smooth().glossy();
         let colour = [0x4f_c3d9, 0xff_d447, 0x7b_d389, 0xf2_5f5c, 0xff_ffff, 0x9b_6bd1][k % 6];

@@ -13,8 +13,8 @@ pub(super) fn model() -> Solid {
 
 /// The height of the land.
 fn height([x, _, z]: V3) -> f64 {
-    let hill = |cx: f64, cz: f64, size: f64, high: f64| high * (-((x - cx).powi(2) + (z - cz).powi(2)) / (size * size)).exp();
-    let edge = 0.9 + 0.1 * (3.0 * x.atan2(z)).sin() + 0.06 * (5.0 * x.atan2(z) + 1.0).cos();
+    let hill = |cx: f64, cz: f64, size: f64, high: f64| high * libm::exp(-((x - cx).powi(2) + (z - cz).powi(2)) / (size * size));
+    let edge = 0.9 + 0.1 * libm::sin(3.0 * libm::atan2(x, z)) + 0.06 * libm::cos(5.0 * libm::atan2(x, z) + 1.0);
     let shore = (1.0 - (reach([x, 0.0, z]) / edge).powi(4)).max(-0.6);
     0.16 * shore + hill(-0.28, -0.1, 0.42, 0.34) * shore.max(0.0) + hill(0.4, 0.12, 0.3, 0.1) * shore.max(0.0)
 }

@@ -16,7 +16,7 @@ pub(super) fn model() -> Solid {
 /// A box with round edges: a superellipsoid, whose sides bulge less the larger the power is.
 fn pebble(size: V3, power: f64, [sides, bands]: [usize; 2]) -> Solid {
     let round = |p: V3| {
-        let norm = p.iter().map(|c| c.abs().powf(power)).sum::<f64>().powf(1.0 / power);
+        let norm = libm::pow(p.iter().map(|c| libm::pow(c.abs(), power)).sum::<f64>(), 1.0 / power);
         p.map(|c| c / norm)
     };
     Solid::ball(sides, bands).bent(round).sized(size.map(|c| c / 2.0)).smooth()
@@ -25,7 +25,7 @@ fn pebble(size: V3, power: f64, [sides, bands]: [usize; 2]) -> Solid {
 fn head() -> Solid {
     let skull = pebble([0.98, 0.74, 0.8], 4.0, [16, 8]).glossy().graded(1, &SHELL);
     let face = Solid::prism(&rounded([0.4, 0.26], 0.13), 0.3, 0.04).at([0.0, -0.01, 0.275]).glossy().graded(1, &SCREEN);
-    let glow = |At { point: [x, y, _], .. }: At| ramp(&[0xff_ffff, 0xb4_fbff, 0x2f_d6e8, 0x0e_8fb0], 10.5 * (x - 0.2).hypot(y - 0.05));
+    let glow = |At { point: [x, y, _], .. }: At| ramp(&[0xff_ffff, 0xb4_fbff, 0x2f_d6e8, 0x0e_8fb0], 10.5 * libm::hypot(x - 0.2, y - 0.05));
     let eye =
         Solid::lathe(&[[0.0, -0.08], [0.105, -0.08], [0.105, 0.0], [0.06, 0.02], [0.0, 0.03]], 10).turned(0, 90.0).at([0.2, 0.05, 0.425]);
     let eyes = eye.glowing().painted(glow).paired();
@@ -48,8 +48,9 @@ fn body() -> Solid {
     let knob = |x: f64, y: f64, colour: u32| Solid::ball(6, 4).sized([0.045, 0.045, 0.03]).at([x, y, 0.35]).smooth().glossy().of(colour);
     let knobs = Solid::all([knob(-0.16, -0.02, 0xff_d447), knob(0.0, -0.02, 0x4f_c36a), knob(0.16, -0.02, 0x3f_8fe0)]);
     let dial = Solid::lathe(&[[0.0, -0.05], [0.1, -0.05], [0.1, 0.02], [0.085, 0.03], [0.0, 0.03]], 12).turned(0, 90.0);
-    let dial =
-        dial.painted(|at| if at.middle[0].hypot(at.middle[1]) < 0.08 { hex(0xff_ffff) } else { hex(0x45_4f63) }).at([-0.12, 0.15, 0.345]);
+    let dial = dial
+        .painted(|at| if libm::hypot(at.middle[0], at.middle[1]) < 0.08 { hex(0xff_ffff) } else { hex(0x45_4f63) })
+        .at([-0.12, 0.15, 0.345]);
     let needle = Solid::block([0.018, 0.08, 0.012]).turned(2, -35.0).at([-0.12, 0.14, 0.38]).of(0xd8_2f2f);
     let slots = Solid::all([0.11, 0.16, 0.21].map(|y| Solid::block([0.17, 0.024, 0.03]).at([0.13, y - 0.02, 0.34]))).of(0x45_4f63);
     let belt = Solid::lathe(&[[0.3, -0.46], [0.36, -0.4], [0.3, -0.33]], 14).sized([1.0, 1.0, 0.78]).glossy().graded(1, &STEEL);
@@ -61,7 +62,7 @@ fn arm() -> Solid {
     let path = (0..=8).map(|k| {
         let place = f64::from(k) / 8.0;
         let turn = place * 1.5;
-        let centre = [0.52 + 0.2 * turn.sin(), 1.08 - 0.42 * place, 0.28 * place * place];
+        let centre = [0.52 + 0.2 * libm::sin(turn), 1.08 - 0.42 * place, 0.28 * place * place];
         (centre, if k % 2 == 0 { 0.085 } else { 0.068 })
     });
     let tube = Solid::tube(&path.collect::<Vec<_>>(), 6).glossy().graded(1, &STEEL);

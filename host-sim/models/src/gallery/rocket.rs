@@ -10,7 +10,7 @@ pub(super) fn model() -> Solid {
 /// The radius of the hull at a height, which is less than 2.2.
 fn radius(y: f64) -> f64 {
     let place = y / 2.0;
-    0.42 * (1.0 - (1.35 * (place - 0.36)).abs().powf(2.2)).max(0.0).powf(0.75)
+    0.42 * libm::pow((1.0 - libm::pow((1.35 * (place - 0.36)).abs(), 2.2)).max(0.0), 0.75)
 }
 
 const RED: [u32; 2] = [0xa8_1f2d, 0xf0_4a48];
@@ -43,7 +43,7 @@ fn windows() -> Solid {
         let glass = Solid::ball(12, 4).sized([0.74 * size, 0.74 * size, 0.045]).at([0.0, 0.0, 0.012]).smooth().glossy();
         let glass = glass.graded(1, &[0x12_3a6b, 0x3f_9ad6, 0xc4_f1ff]);
         let lean = (radius(y + 0.01) - radius(y - 0.01)) / 0.02;
-        ring.with(glass).turned(0, lean.atan().to_degrees()).at([0.0, y, radius(y)])
+        ring.with(glass).turned(0, libm::atan(lean).to_degrees()).at([0.0, y, radius(y)])
     };
     Solid::all([window(0.19, 1.2), window(0.12, 0.74)])
 }
@@ -63,7 +63,7 @@ fn smoke() -> Solid {
         let random = |salt: f64| chance([f64::from(k), salt, 9.0]);
         let (turn, far) = (f64::from(k) * 2.399, 0.2 + 0.16 * f64::from(k).sqrt());
         let size = 0.34 - 0.03 * f64::from(k).sqrt() + 0.06 * random(1.0);
-        let centre: V3 = [far * turn.sin(), -1.0 - 0.08 * random(2.0), far * turn.cos()];
+        let centre: V3 = [far * libm::sin(turn), -1.0 - 0.08 * random(2.0), far * libm::cos(turn)];
         // The flame lights it from the middle.
         let colour = |at: At| {
             let glow = (1.0 - reach(at.point) / 0.62).clamp(0.0, 1.0) * (1.6 + at.point[1]).clamp(0.0, 1.0);

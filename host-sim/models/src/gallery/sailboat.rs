@@ -15,13 +15,14 @@ fn sea() -> Solid {
         true => ramp(&[0x2a_9bb0, 0x4c_c0c2], chance(middle)),
         false => ramp(&[0x10_3a6c, 0x1a_6a98, 0x2a_9bb0], point[1] / 0.6 + 1.0),
     };
-    let wave = |[x, y, z]: V3| [x, if y > -0.01 { 0.045 * (5.0 * x + 2.0 * z).sin() + 0.03 * (7.0 * z - 2.0 * x).cos() } else { y }, z];
+    let wave =
+        |[x, y, z]: V3| [x, if y > -0.01 { 0.045 * libm::sin(5.0 * x + 2.0 * z) + 0.03 * libm::cos(7.0 * z - 2.0 * x) } else { y }, z];
     Solid::lathe(&rings, 18).bent(wave).faceted().painted(colour)
 }
 
 /// Half of the beam, and the heights of the gunwale and the keel, at a place from the stern (0) to the bow (1).
 fn lines(place: f64) -> [f64; 3] {
-    let width = 0.27 * (1.0 - (1.55 * (place - 0.38)).abs().powf(2.4)).max(0.0).sqrt();
+    let width = 0.27 * (1.0 - libm::pow((1.55 * (place - 0.38)).abs(), 2.4)).max(0.0).sqrt();
     [if place >= 1.0 { 0.012 } else { width }, 0.2 + 0.17 * (place - 0.25).powi(2), -0.12 + 0.2 * place.powi(6)]
 }
 
@@ -80,7 +81,7 @@ fn rigging() -> Solid {
     let top = [MAST, 1.78, 0.0];
     let ropes = [rope([1.04, 0.35, 0.0], top), rope([-0.78, 0.24, 0.0], top), rope([0.0, 0.2, 0.24], top), rope([0.0, 0.2, -0.24], top)];
     let ball = Solid::ball(6, 4).sized([0.03; 3]).at([MAST, 1.88, 0.0]).of(0xf0_c14b);
-    let wave = |[x, y, z]: V3| [x, y, z + 0.03 * (14.0 * x).sin()];
+    let wave = |[x, y, z]: V3| [x, y, z + 0.03 * libm::sin(14.0 * x)];
     let flag = Solid::all(
         [0.0, 1.0, 2.0].map(|k| Solid::block([0.09, 0.13 - 0.03 * k, 0.012]).at([MAST - 0.06 - 0.09 * k, 1.7 + 0.015 * k, 0.0])),
     );
@@ -96,7 +97,7 @@ fn sail(foot: [V3; 2], head: V3, belly: f64, colour: impl Fn(f64, V3) -> V3) -> 
         let edge = |k: usize, thick: f64| {
             let share = k as f64 / COLUMNS as f64;
             let foot = [0, 1, 2].map(|c| foot[0][c] + (foot[1][c] - foot[0][c]) * share);
-            let round = belly * (1.0 - up).powf(0.7) * (share * std::f64::consts::PI).sin() * (0.3 + 1.4 * up.min(0.5));
+            let round = belly * libm::pow(1.0 - up, 0.7) * libm::sin(share * std::f64::consts::PI) * (0.3 + 1.4 * up.min(0.5));
             let [x, y, z] = [0, 1, 2].map(|c| foot[c] + (head[c] - foot[c]) * up);
             [x, y, z + round + thick]
         };

@@ -78,7 +78,7 @@ impl Solid {
     /// A ball of radius 1.
     pub(super) fn ball(sides: usize, bands: usize) -> Self {
         let point = |band: usize| {
-            let (sin, cos) = (TAU / 2.0 * band as f64 / bands as f64).sin_cos();
+            let (sin, cos) = libm::sincos(TAU / 2.0 * band as f64 / bands as f64);
             // The poles are exact, for all points of a pole are to be the same.
             if band.is_multiple_of(bands) { [0.0, -cos] } else { [sin, -cos] }
         };
@@ -267,14 +267,14 @@ impl Solid {
 
 /// Points of a circle of radius 1.
 pub(super) fn circle(sides: usize) -> impl Iterator<Item = Point> {
-    (0..sides).map(move |side| (TAU * side as f64 / sides as f64).sin_cos().into())
+    (0..sides).map(move |side| libm::sincos(TAU * side as f64 / sides as f64).into())
 }
 
 /// A rectangle about the origin with these halves of its sides and round corners, counter-clockwise.
 pub(super) fn rounded([x, y]: Point, round: f64) -> Vec<Point> {
     let corner = |(k, [right, up]): (f64, Point)| {
         [0.0, 0.5, 1.0].map(|step| {
-            let (sin, cos) = (90.0 * (k - 1.0 + step)).to_radians().sin_cos();
+            let (sin, cos) = libm::sincos((90.0 * (k - 1.0 + step)).to_radians());
             [right * (x - round) + round * cos, up * (y - round) + round * sin]
         })
     };
