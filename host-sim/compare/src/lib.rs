@@ -243,12 +243,20 @@ impl<'s> Reference<'s> {
     /// # Errors
     /// Errors of [`Self::compare`].
     pub fn total(&self, shader: Shader) -> Result<Spread> {
+        let errors: Vec<_> = self.errors(shader)?.into_iter().flatten().collect();
+        Spread::of(&errors).with_context(|| format!("{} has drawn nothing", shader.name()))
+    }
+
+    /// [`Comparison::errors`] only, which is quick.
+    ///
+    /// # Errors
+    /// Errors of [`Self::compare`].
+    pub fn errors(&self, shader: Shader) -> Result<Vec<Option<f64>>> {
         let size = Size::new(self.frame.size.0, self.frame.size.1);
         let style = Style { perspective_correct: self.perspective_correct, ..shader.into() };
         let levels = level::picture(self.stream, size, style, self.number)?;
         let walked = Walked::of(&self.stream, shader.facts());
-        let errors: Vec<_> = (0..).zip(levels).filter_map(|(pixel, level)| Some(self.best(pixel, level?, &walked)?.1)).collect();
-        Spread::of(&errors).with_context(|| format!("{} has drawn nothing", shader.name()))
+        Ok((0..).zip(levels).map(|(pixel, level)| Some(self.best(pixel, level?, &walked)?.1)).collect())
     }
 
     /// Draws the frame by a method and measures it.

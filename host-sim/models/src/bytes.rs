@@ -1,16 +1,19 @@
 //! The bytes of a stream, aligned so that they can be read in place.
 
-use crate::files;
+use crate::files::Files;
 use anyhow::{Result, anyhow};
 use microphong::{
     Light, Outlines, Stream, StreamError,
     format::ErrorBudget,
     stream::{
-        record::{Header, NO_OUTLINES, OUTLINES_ALONE, OUTLINES_OVER_SURFACES},
+        record::{Camera, Header, Material, NO_OUTLINES, OUTLINES_ALONE, OUTLINES_OVER_SURFACES},
         seal,
     },
 };
-use microphong_render::neighbours::{has_neighbours, with_neighbours};
+use microphong_render::{
+    neighbours::{has_neighbours, with_neighbours},
+    shader::Shader,
+};
 use std::path::Path;
 use zerocopy::{FromBytes, IntoBytes};
 
@@ -35,7 +38,15 @@ impl StreamBytes {
     /// # Errors
     /// The error names the file, its fault and the remedy.
     pub fn read(path: &Path) -> Result<Self> {
-        let bytes = files::read(path)?;
+        Self::read_from(&Files::OnDisk, path)
+    }
+
+    /// Reads a `.tri` file of these files, and checks it.
+    ///
+    /// # Errors
+    /// The error names the file, its fault and the remedy.
+    pub fn read_from(files: &Files, path: &Path) -> Result<Self> {
+        let bytes = files.read(path)?;
         let stream = Self::from(bytes.as_slice());
         let checked = stream.parse().and_then(|stream| stream.names().try_for_each(|entry| entry.map(drop)));
         checked.map_err(|error| anyhow!("{}: {error}", path.display()))?;
@@ -64,6 +75,24 @@ impl StreamBytes {
         })
     }
 
+    /// Names another method.
+    #[must_use]
+    pub fn with_shader(self, shader: Shader) -> Self {
+        self.with_header(|header| header.shader = shader.facts().id)
+    }
+
+    /// Puts one colour behind the picture.
+    #[must_use]
+    pub fn with_background(self, colour: [u8; 3]) -> Self {
+        self.with_header(|header| (header.background, header.background_bottom) = (colour, colour))
+    }
+
+    /// Changes the camera.
+    #[must_use]
+    pub fn with_camera(self, change: impl FnOnce(&mut Camera)) -> Self {
+        self.with_header(|header| change(&mut header.camera))
+    }
+
     /// Changes the header.
     fn with_header(mut self, change: impl FnOnce(&mut Header)) -> Self {
         let length = self.length;
@@ -73,6 +102,22 @@ impl StreamBytes {
             seal(bytes);
         }
         self
+    }
+
+    /// Gives all surfaces this material.
+    ///
+    /// # Errors
+    /// Errors of [`Self::parse`], or when the material is not valid.
+    pub fn with_material(&self, material: Material) -> Result<Self> {
+        let stream = self.parse()?;
+        let (first, count) = (size_of::<Header>() + size_of_val(stream.meshes), stream.materials.len());
+        let mut bytes = self.as_bytes().to_vec();
+        let records = bytes.iter_mut().skip(first).take(count * size_of::<Material>());
+        records.zip(material.as_bytes().iter().cycle()).for_each(|(old, &new)| *old = new);
+        seal(&mut bytes);
+        let changed = Self::from(&bytes[..]);
+        changed.parse()?;
+        Ok(changed)
     }
 
     /// Puts other lights in place of those that there are.

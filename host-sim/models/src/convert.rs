@@ -3,6 +3,7 @@
 use crate::{
     bytes::StreamBytes,
     fields::quoted,
+    files::Files,
     import::{self, Imported, Rules},
     levels::{self, Simplified},
     look::{BACKGROUND, Lamp, LampKind, Look, Surface},
@@ -123,6 +124,14 @@ impl Options {
     }
 }
 
+impl Options {
+    /// The usual camera, for a mesh whose axis `up` points up.
+    #[must_use]
+    pub fn with_up(self, up: Up) -> Self {
+        Self { view: View::orbit(up, AZIMUTH.to_radians(), ELEVATION.to_radians(), DISTANCE, ORBIT), ..self }
+    }
+}
+
 /// Steps of long work.
 pub trait Steps {
     /// Begins `count` steps of work that has this name, and ends the work before.
@@ -175,10 +184,18 @@ impl Converted {
     /// # Errors
     /// Names the file, and what is wrong with it.
     pub fn read(path: &Path, options: &Options, steps: &dyn Steps) -> Result<Self> {
+        Self::read_from(&Files::OnDisk, path, options, steps)
+    }
+
+    /// Reads a mesh file of these files.
+    ///
+    /// # Errors
+    /// Names the file, and what is wrong with it.
+    pub fn read_from(files: &Files, path: &Path, options: &Options, steps: &dyn Steps) -> Result<Self> {
         let place = || path.display().to_string();
         steps.begin("reading the file", 1);
         let Imported { mut mesh, report, mut objects, mut materials, faults, mut remarks, painted, backs } =
-            import::file_by(path, options.weld, options.rules)?;
+            import::file_from(files, path, options.weld, options.rules)?;
         if options.repaint && materials.iter().any(Option::is_some) {
             remarks.push(format!("{} materials of the file have the one colour of --colour", materials.iter().flatten().count()));
             mesh.merge_materials();

@@ -1,4 +1,4 @@
-//! Reads the file of a model, and the files that it names.
+//! Reads the file of a model, and the files that it names, from disk or from memory.
 //!
 //! A model may come from anybody. So the files that it names are opened only if they are regular files in its folder, and no file is read without end.
 
@@ -10,6 +10,7 @@ use std::{
     fs::{self, File},
     io::{self, Read},
     path::{Component, Path, PathBuf},
+    sync::Arc,
 };
 
 /// Largest number of bytes of a file.
@@ -18,12 +19,44 @@ pub(crate) const LARGEST_FILE: u64 = 1 << 30;
 /// Number of bytes that are read at first.
 const STEP: u64 = 1 << 16;
 
-/// Reads a file that the user names. It may be a pipe.
-///
-/// # Errors
-/// When the file cannot be read, or is too large.
-pub(crate) fn read(path: &Path) -> Result<Vec<u8>> {
-    limited(path, LARGEST_FILE)
+/// The place that files are read from.
+#[derive(Clone, Debug)]
+pub enum Files {
+    /// The disk.
+    OnDisk,
+    /// Files in memory, by their paths with slashes. There are no others.
+    InMemory(Arc<[(String, Vec<u8>)]>),
+}
+
+impl Files {
+    /// Files in memory, by their paths with slashes.
+    #[must_use]
+    pub fn in_memory(files: impl IntoIterator<Item = (String, Vec<u8>)>) -> Self {
+        Self::InMemory(files.into_iter().collect())
+    }
+
+    /// Reads a file that the user names. On disk it may be a pipe.
+    ///
+    /// # Errors
+    /// When the file cannot be read, or is too large.
+    pub fn read(&self, path: &Path) -> Result<Vec<u8>> {
+        match self {
+            Self::OnDisk => limited(path, LARGEST_FILE),
+            Self::InMemory(files) => {
+                let file = files.iter().find(|(name, _)| Path::new(name) == path);
+                file.map(|(_, bytes)| bytes.clone()).ok_or_else(|| Missing(path.to_owned()).into())
+            }
+        }
+    }
+
+    /// Whether there is a file that can be read.
+    #[must_use]
+    pub fn has(&self, path: &Path) -> bool {
+        match self {
+            Self::OnDisk => path.is_file(),
+            Self::InMemory(files) => files.iter().any(|(name, _)| Path::new(name) == path),
+        }
+    }
 }
 
 /// Reads a file of at most `largest` bytes.
@@ -68,23 +101,16 @@ impl std::error::Error for Missing {}
 /// The files that a model names.
 #[derive(Clone, Debug)]
 pub(crate) struct Folder {
+    files: Files,
     folder: PathBuf,
     allow_outside: bool,
-    /// Files by their names, in place of a folder.
-    in_memory: Option<Vec<(String, Vec<u8>)>>,
 }
 
 impl Folder {
-    /// The folder of a model; with `allow_outside`, files elsewhere are read, too.
-    pub(crate) fn of(model: &Path, allow_outside: bool) -> Self {
+    /// The folder of a model; with `allow_outside`, files elsewhere on a disk are read, too.
+    pub(crate) fn of(files: &Files, model: &Path, allow_outside: bool) -> Self {
         let folder = model.parent().filter(|folder| !folder.as_os_str().is_empty()).unwrap_or_else(|| Path::new("."));
-        Self { folder: folder.to_owned(), allow_outside, in_memory: None }
-    }
-
-    /// Files in memory with these names. No other files are read.
-    pub(crate) fn in_memory(files: &[(&str, &[u8])]) -> Self {
-        let files = files.iter().map(|&(name, bytes)| (name.to_owned(), bytes.to_vec())).collect();
-        Self { folder: PathBuf::from("."), allow_outside: false, in_memory: Some(files) }
+        Self { files: files.clone(), folder: folder.to_owned(), allow_outside }
     }
 
     /// Reads a file by its name in the model, as Windows and others write it.
@@ -93,12 +119,8 @@ impl Folder {
     /// When there is no such file, or it lies outside the folder, is no regular file, or is too large.
     pub(crate) fn read(&self, name: &str) -> Result<(PathBuf, Vec<u8>)> {
         let path = self.find(name)?;
-        if let Some(files) = &self.in_memory {
-            let file = files.iter().find(|(name, _)| Path::new(name) == path);
-            return file.map(|(_, bytes)| (path.clone(), bytes.clone())).ok_or_else(|| Missing(path).into());
-        }
-        ensure!(fs::metadata(&path).is_ok_and(|file| file.is_file()), "{} is no regular file; export the model again", path.display());
-        let bytes = read(&path)?;
+        ensure!(self.files.has(&path), "{} is no regular file; export the model again", path.display());
+        let bytes = self.files.read(&path)?;
         Ok((path, bytes))
     }
 
@@ -107,10 +129,6 @@ impl Folder {
     /// # Errors
     /// [`Missing`] when there is no such file, and another error when it lies outside the folder.
     pub(crate) fn find(&self, name: &str) -> Result<PathBuf> {
-        if let Some(files) = &self.in_memory {
-            let path = PathBuf::from(name);
-            return if files.iter().any(|(known, _)| known == name) { Ok(path) } else { Err(Missing(path).into()) };
-        }
         let slashes = name.replace('\\', "/");
         let given = Path::new(&slashes);
         let is_inside = given.components().all(|part| matches!(part, Component::Normal(_) | Component::CurDir)) && !has_drive(&slashes);
@@ -129,7 +147,8 @@ impl Folder {
             return Ok(path);
         }
         let place = self.folder.join(bare);
-        if !is_inside && !self.allow_outside {
+        // Memory has nothing outside that could be allowed.
+        if !is_inside && !self.allow_outside && matches!(self.files, Files::OnDisk) {
             bail!("{name:?} lies outside the folder of the model; put it at {}, or allow such files with --allow-outside", place.display());
         }
         // As it was given: a folder that is `.` is not said.
@@ -140,6 +159,9 @@ impl Folder {
     /// The path of what is there under this name, or under the name in other capitals.
     fn known(&self, name: &Path) -> Option<PathBuf> {
         let path = self.folder.join(name);
+        if let Files::InMemory(files) = &self.files {
+            return in_memory(files, &path);
+        }
         if fs::symlink_metadata(&path).is_ok() {
             return Some(path);
         }
@@ -159,7 +181,7 @@ impl Folder {
 
     /// Passes files of the folder: a link may lead out of it.
     fn check(&self, path: &Path) -> Result<()> {
-        if self.allow_outside {
+        if self.allow_outside || matches!(self.files, Files::InMemory(_)) {
             return Ok(());
         }
         let place = || format!("cannot read {}", path.display());
@@ -171,6 +193,18 @@ impl Folder {
         );
         Ok(())
     }
+}
+
+/// The file in memory that has this path, or the first one, by the order of names, whose path differs in capitals only.
+fn in_memory(files: &[(String, Vec<u8>)], path: &Path) -> Option<PathBuf> {
+    /// The path without its dots, which mean nothing.
+    fn plain(path: &Path) -> PathBuf {
+        path.components().filter(|part| !matches!(part, Component::CurDir)).collect()
+    }
+    let wanted = plain(path);
+    let small = |path: &Path| path.to_string_lossy().to_lowercase();
+    let known = || files.iter().map(|(name, _)| PathBuf::from(name));
+    known().find(|file| plain(file) == wanted).or_else(|| known().filter(|file| small(&plain(file)) == small(&wanted)).min())
 }
 
 /// Whether a path begins with the drive of a Windows computer.
@@ -199,7 +233,7 @@ mod tests {
         fs::create_dir(place.path().join("Maps")).unwrap();
         fs::write(place.path().join("A b.mtl"), "one").unwrap();
         fs::write(place.path().join("Maps/c.mtl"), "two").unwrap();
-        let folder = Folder::of(&place.path().join("a.obj"), false);
+        let folder = Folder::of(&Files::OnDisk, &place.path().join("a.obj"), false);
         for name in [
             "A b.mtl",
             "a B.MTL",
@@ -229,7 +263,7 @@ mod tests {
         fs::create_dir(&inside).unwrap();
         let secret = place.path().join("secret.bin");
         fs::write(&secret, "secret").unwrap();
-        let [closed, open] = [false, true].map(|outside| Folder::of(&inside.join("a.gltf"), outside));
+        let [closed, open] = [false, true].map(|outside| Folder::of(&Files::OnDisk, &inside.join("a.gltf"), outside));
         for name in [&secret.display().to_string()[..], "../secret.bin", "..\\secret.bin", "x/../../secret.bin"] {
             let error = said(closed.read(name));
             assert!(error.contains("lies outside the folder of the model") && error.contains("--allow-outside"), "{name}: {error}");
@@ -253,12 +287,24 @@ mod tests {
     }
 
     #[test]
-    fn files_in_memory_have_no_folder() {
-        let folder = Folder::in_memory(&[("a.mtl", b"one")]);
-        assert_eq!(folder.read("a.mtl").unwrap().1, b"one");
-        for name in ["A.MTL", "./a.mtl", "Cargo.toml", "/dev/zero", ""] {
-            assert!(said(folder.read(name)).ends_with("put it beside the mesh"), "{name}");
+    fn files_in_memory_are_found_as_those_of_a_folder_are() {
+        let files = Files::in_memory([("a.mtl", "one"), ("Maps/c.png", "two")].map(|(name, text)| (name.to_owned(), text.into())));
+        let folder = Folder::of(&files, Path::new("a.obj"), false);
+        for name in ["a.mtl", "A.MTL", "./a.mtl", ".\\a.mtl", "C:\\Users\\me\\a.mtl", "/home/me/a.mtl", "../../a.mtl"] {
+            assert_eq!(folder.read(name).unwrap().1, b"one", "{name}");
         }
+        for name in ["Maps/c.png", "maps\\C.png"] {
+            assert_eq!(folder.read(name).unwrap().1, b"two", "{name}");
+        }
+        // Nothing of the disk is seen, even if that is allowed.
+        for folder in [&folder, &Folder::of(&files, Path::new("a.obj"), true)] {
+            for name in ["Cargo.toml", "/dev/zero", "c.png", "Maps", "", "."] {
+                assert!(said(folder.read(name)).ends_with("put it beside the mesh"), "{name}");
+            }
+        }
+        let inside = Folder::of(&files, Path::new("Maps/b.obj"), false);
+        assert_eq!(inside.read("c.png").unwrap().1, b"two");
+        assert!(said(inside.read("a.mtl")).ends_with("Maps/a.mtl; put it beside the mesh"));
     }
 
     #[test]

@@ -7,7 +7,7 @@ use crate::{
     contents::Contents,
     faults::{COMPUTED_NORMAL, TURNED},
     fields::quoted,
-    files::{self, Folder, Missing},
+    files::{Files, Folder, Missing},
     foreign, gltf,
     look::Surface,
     mesh::{self, Mesh, Report, Submesh, Weld},
@@ -82,7 +82,15 @@ pub fn file(path: &Path, weld: Weld) -> Result<Imported> {
 /// # Errors
 /// Names the file and the place in it.
 pub fn file_by(path: &Path, weld: Weld, rules: Rules) -> Result<Imported> {
-    welded(path, &files::read(path)?, &Folder::of(path, rules.allow_outside), weld, rules)
+    file_from(&Files::OnDisk, path, weld, rules)
+}
+
+/// Reads and welds a file as [`file_by()`] does, from these files. The files that it names are taken from them as well.
+///
+/// # Errors
+/// Names the file and the place in it.
+pub fn file_from(files: &Files, path: &Path, weld: Weld, rules: Rules) -> Result<Imported> {
+    welded(path, &files.read(path)?, &Folder::of(files, path, rules.allow_outside), weld, rules)
 }
 
 /// Reads and welds a file that is in memory, as [`file_by()`] does. The files that it names are taken from `beside`, by their names, and from nowhere else.
@@ -90,7 +98,8 @@ pub fn file_by(path: &Path, weld: Weld, rules: Rules) -> Result<Imported> {
 /// # Errors
 /// Names the file and the place in it.
 pub fn bytes_by(path: &Path, bytes: &[u8], beside: &[(&str, &[u8])], weld: Weld, rules: Rules) -> Result<Imported> {
-    welded(path, bytes, &Folder::in_memory(beside), weld, rules)
+    let files = Files::in_memory(beside.iter().map(|&(name, bytes)| (name.to_owned(), bytes.to_vec())));
+    welded(path, bytes, &Folder::of(&files, Path::new(""), false), weld, rules)
 }
 
 fn welded(path: &Path, bytes: &[u8], folder: &Folder, weld: Weld, rules: Rules) -> Result<Imported> {

@@ -9,7 +9,7 @@ pub mod convex;
 pub mod distance;
 mod faults;
 mod fields;
-mod files;
+pub mod files;
 mod foreign;
 pub mod gallery;
 pub mod gltf;

@@ -307,8 +307,8 @@ impl Look {
             }
             first_vertex += u32::from(vertices);
         }
-        self.surfaces.iter().for_each(|surface| bytes.extend_from_slice(material(surface).as_bytes()));
-        self.lamps.iter().for_each(|lamp| bytes.extend_from_slice(light(lamp).as_bytes()));
+        self.surfaces.iter().for_each(|surface| bytes.extend_from_slice(surface.record().as_bytes()));
+        self.lamps.iter().for_each(|lamp| bytes.extend_from_slice(lamp.record().as_bytes()));
         for &Member { first_mesh, meshes } in &self.cast.members {
             bytes.extend_from_slice(Instance { first_mesh, meshes, material: OWN_MATERIALS, reserved: 0 }.as_bytes());
         }
@@ -448,13 +448,25 @@ fn gain(x: f64) -> Gain {
     nearest::<Gain>(x).min(Gain::from_bits(MAX_GAIN))
 }
 
-fn material(surface: &Surface) -> Material {
-    let Surface { ambient, diffuse, specular, exponent, .. } = *surface;
-    Material::new(ambient.map(gain), diffuse.map(gain), specular.map(gain), exponent)
+impl Surface {
+    /// The record of the surface in a stream.
+    #[must_use]
+    pub fn record(&self) -> Material {
+        let Self { ambient, diffuse, specular, exponent, .. } = *self;
+        Material::new(ambient.map(gain), diffuse.map(gain), specular.map(gain), exponent)
+    }
 }
 
 /// The smallest difference of the cosines of a cone: 1/1,024.
 const LEAST_SOFTNESS: i16 = 16;
+
+impl Lamp {
+    /// The record of the light in a stream.
+    #[must_use]
+    pub fn record(&self) -> Light {
+        light(self)
+    }
+}
 
 fn light(lamp: &Lamp) -> Light {
     let kind = match lamp.kind {

@@ -4,7 +4,7 @@ pub use crate::gallery::{GALLERY, LOW_POLY, ORDINARY};
 use crate::{
     bytes::StreamBytes,
     convert::{COPPER, Converted, DISTANCE, MARGIN, ORBIT, Options, SQUARE, Steps},
-    files::read,
+    files::Files,
     foreign, gallery,
     look::{Lamp, Look, Surface},
     mesh::{self, Mesh, Weld},
@@ -15,6 +15,7 @@ use crate::{
     view::{Up, View},
 };
 use anyhow::{Context, Result};
+use microphong::stream::record::OPEN;
 use std::{f64::consts::TAU, fmt, path::Path};
 
 /// Something to draw.
@@ -26,6 +27,18 @@ pub struct Scene {
     pub stream: StreamBytes,
     /// Width and height that suit it.
     pub size: (u32, u32),
+}
+
+impl Scene {
+    /// The stream with the neighbours of its triangles, from which outlines are found; `None` if a mesh has too many triangles for that.
+    ///
+    /// # Errors
+    /// When the stream is not valid.
+    pub fn smooth(&self) -> Result<Option<StreamBytes>> {
+        let stream = self.stream.parse()?;
+        let has_room = stream.meshes.iter().all(|mesh| mesh.triangles <= u32::from(OPEN));
+        if has_room { self.stream.with_neighbours().map(Some) } else { Ok(None) }
+    }
 }
 
 /// Names of the built-in scenes.
@@ -54,6 +67,11 @@ pub const PORTFOLIO: [&str; 9] = {
     let ([a, b, c, d, e, f], [g, h, i]) = (COMPARED, ORDINARY);
     [a, b, c, d, e, f, g, h, i]
 };
+
+/// The names of all built-in scenes.
+pub fn all() -> impl Iterator<Item = &'static str> {
+    NAMES.into_iter().chain(VARIANTS).chain(ORDINARY).chain(GALLERY).chain(SCRIPTED)
+}
 
 /// A description of a built-in scene; empty for other names.
 #[must_use]
@@ -131,6 +149,14 @@ pub fn load(name_or_path: &str) -> Result<Scene> {
 /// # Errors
 /// [`Misplaced`] when options are given for what is no mesh file; else the errors of [`load`].
 pub fn load_with(name_or_path: &str, options: &Options, are_given: bool, steps: &dyn Steps) -> Result<Scene> {
+    load_from(&Files::OnDisk, name_or_path, options, are_given, steps)
+}
+
+/// Loads as [`load_with`] does; what is not built in is one of these files.
+///
+/// # Errors
+/// Errors of [`load_with`].
+pub fn load_from(files: &Files, name_or_path: &str, options: &Options, are_given: bool, steps: &dyn Steps) -> Result<Scene> {
     let fixed = |kind, remedy| if are_given { Err(Misplaced { name: name_or_path.to_owned(), kind, remedy }) } else { Ok(()) };
     let built_in = "a built-in scene";
     if NAMES.contains(&name_or_path) || VARIANTS.contains(&name_or_path) || gallery::Exhibit::named(name_or_path).is_some() {
@@ -151,22 +177,23 @@ pub fn load_with(name_or_path: &str, options: &Options, are_given: bool, steps: 
     let stream = match ending.as_deref().and_then(|e| e.to_str()) {
         Some("tri") => {
             fixed("a finished stream", "give them to `microphong convert`, which makes streams")?;
-            StreamBytes::read(path)?
+            StreamBytes::read_from(files, path)?
         }
         Some("toml") => {
             fixed("a scripted scene", "write them into its text")?;
-            let scene = script::of_bytes(&read(path)?, path.parent(), &warn).with_context(|| name_or_path.to_owned())?;
+            let scene = script::of_bytes(&files.read(path)?, path.parent().map(|folder| (files, folder)), &warn)
+                .with_context(|| name_or_path.to_owned())?;
             size = scene.1;
             scene.0
         }
         Some("obj" | "stl" | "ply" | "gltf" | "glb" | "3mf") => {
-            let converted = Converted::read(path, options, steps)?;
+            let converted = Converted::read_from(files, path, options, steps)?;
             converted.faults.iter().for_each(|fault| warn(fault));
             converted.stream().with_context(|| name_or_path.to_owned())?
         }
         _ => {
-            if path.is_file() {
-                foreign::refuse(path, &read(path)?)?;
+            if files.has(path) {
+                foreign::refuse(path, &files.read(path)?)?;
                 foreign::refuse_ending(path)?;
             }
             return Err(Unknown(name_or_path.to_owned()).into());

@@ -7,6 +7,7 @@ use crate::{
     bytes::StreamBytes,
     coat::TextureSize,
     fields::{Field, Place, Table, quoted},
+    files::Files,
     import::{self, Colours, Imported, Rules, surfaces},
     look::{Cast, Cone, KEY, LIGHT_RANGE, Lamp, LampKind, Look, Member, Surface, Way},
     mesh::{CREASE, Mesh, Weld},
@@ -62,11 +63,14 @@ const UP: V3 = [0.0, 1.0, 0.0];
 /// Share of light that is everywhere.
 const AMBIENT: f64 = 0.12;
 
+/// A folder among files.
+pub type Folder<'f> = (&'f Files, &'f Path);
+
 /// Reads a scripted scene from the bytes of a file, as [`stream`] does. `warn` is called for what is wrong with its mesh files, and mended.
 ///
 /// # Errors
 /// The error names the line, the field and its fault.
-pub fn of_bytes(bytes: &[u8], folder: Option<&Path>, warn: &dyn Fn(&str)) -> Result<(StreamBytes, (u32, u32))> {
+pub fn of_bytes(bytes: &[u8], folder: Option<Folder<'_>>, warn: &dyn Fn(&str)) -> Result<(StreamBytes, (u32, u32))> {
     let text = str::from_utf8(bytes).map_err(|error| {
         let line = 1 + bytes[..error.valid_up_to()].iter().filter(|&&byte| byte == b'\n').count();
         anyhow!("line {line}: the text is not UTF-8; save it in this encoding")
@@ -78,11 +82,11 @@ pub fn of_bytes(bytes: &[u8], folder: Option<&Path>, warn: &dyn Fn(&str)) -> Res
 ///
 /// # Errors
 /// The error names the line, the field and its fault.
-pub fn stream(text: &str, folder: Option<&Path>) -> Result<(StreamBytes, (u32, u32))> {
+pub fn stream(text: &str, folder: Option<Folder<'_>>) -> Result<(StreamBytes, (u32, u32))> {
     read(text, folder, &|_| ())
 }
 
-fn read(text: &str, folder: Option<&Path>, warn: &dyn Fn(&str)) -> Result<(StreamBytes, (u32, u32))> {
+fn read(text: &str, folder: Option<Folder<'_>>, warn: &dyn Fn(&str)) -> Result<(StreamBytes, (u32, u32))> {
     let mut script = Table::parse(text)?;
     let most = NUMBERS as usize;
     let frames = script.need("frames", |field| field.integer(&(1..=NUMBERS)))?;
@@ -193,7 +197,7 @@ struct Stock {
 
 impl Stock {
     /// Adds a mesh.
-    fn add(&mut self, mut table: Table<'_>, folder: Option<&Path>, warn: &dyn Fn(&str)) -> Result<()> {
+    fn add(&mut self, mut table: Table<'_>, folder: Option<Folder<'_>>, warn: &dyn Fn(&str)) -> Result<()> {
         let name = table.need("name", name)?;
         let file = table.get("file", Field::text)?;
         let shape = table.get("shape", Field::text)?;
@@ -280,11 +284,11 @@ fn name(field: Field<'_>) -> Result<String> {
 fn from_file(
     file: &str,
     (crease, rules): (f64, Rules),
-    folder: Option<&Path>,
+    folder: Option<Folder<'_>>,
     warn: &dyn Fn(&str),
 ) -> Result<(Mesh, Vec<Option<Material>>)> {
-    let folder = folder.context("there is no folder from which files could be read; use a shape")?;
-    let Imported { mesh, materials, faults, .. } = import::file_by(&folder.join(file), Weld { crease, ..Weld::default() }, rules)?;
+    let (files, folder) = folder.context("there is no folder from which files could be read; use a shape")?;
+    let Imported { mesh, materials, faults, .. } = import::file_from(files, &folder.join(file), Weld { crease, ..Weld::default() }, rules)?;
     faults.iter().for_each(|fault| warn(&format!("{file}: {fault}")));
     Ok((mesh, materials))
 }

@@ -321,11 +321,19 @@ pub fn painted(stream: Stream<'_>, settings: &Settings, number: u32) -> anyhow::
         type Output = anyhow::Result<(Picture, Told)>;
 
         fn in_format<C: Pixel, F: FromDrawn<C>>(self) -> Self::Output {
-            let Self(stream, s, number) = self;
-            let (pixels, stats, told) = told::<Traced<C>>(s.style.shader, stream, s.size, s.style.perspective_correct, number)?;
-            let painted: Vec<_> = pixels.into_iter().map(Traced::painted).collect();
-            Ok((Picture { rgb: rgb_bytes(&painted), crc: render::crc(&painted), stats }, told))
+            painted_as::<C>(self.0, self.1, self.2)
         }
     }
     settings.format.run(Paint(stream, settings, number))
+}
+
+/// Draws like [`painted`], pixels `C`, whatever the format of the settings is.
+///
+/// # Errors
+/// When the size is out of range.
+pub fn painted_as<C: Pixel>(stream: Stream<'_>, settings: &Settings, number: u32) -> anyhow::Result<(Picture, Told)> {
+    let Settings { size, style, .. } = *settings;
+    let (pixels, stats, told) = told::<Traced<C>>(style.shader, stream, size, style.perspective_correct, number)?;
+    let painted: Vec<_> = pixels.into_iter().map(Traced::painted).collect();
+    Ok((Picture { rgb: rgb_bytes(&painted), crc: render::crc(&painted), stats }, told))
 }

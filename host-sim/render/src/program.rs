@@ -6,7 +6,7 @@ use crate::{
     shader::Shader,
 };
 use anyhow::{Context, Result, bail, ensure};
-use microphong::{Stream, features::Feature};
+use microphong::{Layout, Stream, features::Feature};
 use std::fmt;
 
 /// Methods that there are programs with.
@@ -53,6 +53,17 @@ pub fn needs(stream: &Stream<'_>, format: Format) -> Vec<Feature> {
     Feature::ALL.into_iter().filter(|feature| feature.is_needed_by(stream, &channels)).collect()
 }
 
+/// A layout as a program has it.
+#[must_use]
+pub fn layout_text(layout: &Layout) -> String {
+    let Layout { width, rows, vertices, triangles, materials, objects, active_triangles, highlight_tables, antialias, edges, .. } = layout;
+    let several = if *objects > 1 { format!(".objects({objects})") } else { String::new() };
+    let text = format!("Layout::new({width}, {rows}).vertices({vertices}).triangles({triangles}).materials({materials}){several}");
+    let tables = if *highlight_tables > 0 { "" } else { ".without_highlight_tables()" };
+    let smooth = if *antialias { format!(".antialias(true).edges({edges})") } else { String::new() };
+    format!("{text}.active_triangles({active_triangles}){tables}{smooth}")
+}
+
 /// A program.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct Program {
@@ -87,7 +98,8 @@ impl Program {
     }
 
     /// The recorded program that takes what this one takes, or more: `auto` is the largest method, and `Rgb565` the larger format.
-    fn recorded(self) -> Self {
+    #[must_use]
+    pub fn recorded(self) -> Self {
         let shader = if SHADERS.contains(&self.shader) { self.shader } else { Shader::AUTO };
         let format = if FORMATS.contains(&self.format) { self.format } else { Format::Rgb565 };
         Self { shader, format, ..self }
@@ -143,6 +155,14 @@ impl fmt::Display for Entry {
     }
 }
 
+/// The recorded sizes of this version.
+///
+/// # Errors
+/// When the record is damaged.
+pub fn recorded() -> Result<Vec<Entry>> {
+    Entry::all(include_str!("../../../tests/baselines/sizes.csv"))
+}
+
 /// The common chips, and the share of flash or RAM, whichever is larger, that a program takes of each. The program has this method, this format and
 /// these features. The mesh takes so many bytes of flash, and the renderer's memory and a band take so many bytes of RAM. The rest is taken from the
 /// record of this version.
@@ -150,7 +170,7 @@ impl fmt::Display for Entry {
 /// # Errors
 /// When the record is damaged.
 pub fn loads(features: Features, shader: Shader, format: Format, [mesh, memory]: [usize; 2]) -> Result<Vec<(Chip, f64)>> {
-    let recorded = Entry::all(include_str!("../../../tests/baselines/sizes.csv"))?;
+    let recorded = recorded()?;
     let load = |chip: Chip| {
         let program = Program { core: chip.core, features, shader, format }.recorded();
         let entry = recorded.iter().find(|entry| entry.program == program).with_context(|| format!("no size of {program:?}"))?;

@@ -8,6 +8,7 @@ use embedded_graphics_core::{
 };
 use microphong::{
     Frame, Layout, Outlines, Renderer, Skips, Stats, Stream,
+    format::ErrorBudget,
     pixel::{Channels, FromDrawn, Light, LightGray, PictureCrc, Pixel, PixelFormat, Rgb332, gamma},
 };
 use zerocopy::IntoBytes;
@@ -136,7 +137,7 @@ pub fn fewest_active_triangles(stream: &Stream<'_>, size: Size, band_rows: u32) 
     let mut numbers = (0..frames).step_by(frames.div_ceil(COUNTED).max(1) as usize).peekable();
     while numbers.peek().is_some() {
         let mut memory = vec![0; layout.words::<Gray8>()];
-        let mut renderer = Renderer::with_shader(*stream, size, &layout, &mut memory, Shader::FLAT.on())?;
+        let mut renderer = Renderer::with_shader(*stream, size, &layout, &mut memory, microphong::Shader::FLAT)?;
         while let Some(&number) = numbers.peek() {
             let missing = missing_active_triangles(renderer.frame(number), &mut band)?;
             if missing > 0 {
@@ -173,8 +174,7 @@ fn missing_active_triangles(mut frame: Frame<'_, Gray8>, band: &mut [Gray8]) -> 
 /// When `size` is out of range.
 pub fn program_layout(stream: &Stream<'_>, shader: Shader, size: Size, band_rows: u32) -> Result<Layout> {
     let layout = Layout::new(size.width as usize, band_rows as usize).with_room_for(stream);
-    let has_tables = shader.on::<Gray8>().method().needs_highlight_tables();
-    let layout = if has_tables { layout } else { layout.without_highlight_tables() };
+    let layout = if shader.needs_highlight_tables() { layout } else { layout.without_highlight_tables() };
     let fewest = fewest_active_triangles(stream, size, band_rows)?;
     let layout = layout.active_triangles((fewest + fewest.div_ceil(2)).min(layout.triangles));
     if stream.neighbours.is_empty() {
@@ -188,7 +188,7 @@ pub fn program_layout(stream: &Stream<'_>, shader: Shader, size: Size, band_rows
 fn most_edges(stream: &Stream<'_>, size: Size) -> Result<usize> {
     let layout = Layout::new(size.width as usize, 16).with_room_for(stream).antialias(true).edges(3 * stream.triangles.len());
     let mut memory = vec![0; layout.words::<Gray8>()];
-    let mut renderer = Renderer::<Gray8>::with_shader(*stream, size, &layout, &mut memory, Shader::FLAT.on())?;
+    let mut renderer = Renderer::<Gray8>::with_shader(*stream, size, &layout, &mut memory, microphong::Shader::FLAT)?;
     renderer.set_antialias(true)?;
     let frames = u32::from(stream.header.frames);
     let step = frames.div_ceil(COUNTED).max(1) as usize;
@@ -313,6 +313,20 @@ impl Format {
         self.run(Of)
     }
 
+    /// The error budget of scenes that state none.
+    #[must_use]
+    pub fn budget(self) -> ErrorBudget {
+        struct Of;
+        impl InFormat for Of {
+            type Output = ErrorBudget;
+
+            fn in_format<C: Pixel, F: FromDrawn<C>>(self) -> ErrorBudget {
+                C::BUDGET
+            }
+        }
+        self.run(Of)
+    }
+
     /// Whether the format has 16 greys or fewer.
     #[must_use]
     pub const fn has_few_greys(self) -> bool {
@@ -346,6 +360,18 @@ pub struct Settings {
     /// Pixel format.
     pub format: Format,
 }
+
+impl Settings {
+    /// The settings by which `microphong render` draws a picture if nothing else is asked for: dithered if the format has few colours, for a display
+    /// with a linear curve, and with jagged outlines.
+    #[must_use]
+    pub fn usual(shader: Shader, size: Size, format: Format) -> Self {
+        Self { size, style: Style { dither: format.is_dithered(), ..shader.into() }, band_rows: ROWS, format }
+    }
+}
+
+/// Rows of a band, where nobody names another number.
+pub const ROWS: u32 = 16;
 
 /// A finished frame of any format.
 #[derive(Clone, Debug)]

@@ -117,6 +117,12 @@ impl Shader {
         self.facts().name
     }
 
+    /// Whether the method looks up highlights in tables.
+    #[must_use]
+    pub fn needs_highlight_tables(self) -> bool {
+        self.0.needs_highlight_tables()
+    }
+
     /// The method for a pixel format: with loops of its own if it has any.
     #[must_use]
     pub fn on<C: Pixel>(self) -> microphong::Shader<C> {

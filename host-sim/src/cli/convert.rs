@@ -15,7 +15,7 @@ use super::{
 };
 use anyhow::{Context, Result, anyhow, bail};
 use embedded_graphics_core::geometry::Size;
-use microphong::{Layout, Stream, format::ErrorBudget, stream::record};
+use microphong::{Stream, format::ErrorBudget, stream::record};
 use microphong_render::board::Board;
 use microphong_sim::{
     bytes::StreamBytes,
@@ -24,6 +24,7 @@ use microphong_sim::{
     mesh::Mesh,
     output,
     paint::Painted,
+    program,
     quantise::{Part, quantise},
     render::{self, Format},
     scene::{self, Scene},
@@ -276,7 +277,7 @@ pub(crate) fn run(arguments: &Arguments) -> Result<Outcome> {
         simplified: simplified.map(|simplified| Simplified::new(simplified, &look, &parts, &options.levels)),
         levels: parts.iter().enumerate().flat_map(|(mesh, part)| part.coarser.iter().map(move |level| of(mesh, level))).collect(),
         bytes: bytes.as_bytes().len(),
-        layout: text_of(&layout),
+        layout: program::layout_text(&layout),
         memory: format.bytes(&layout)[0],
         format: format.name(),
         features: features::names(&stream, format),
@@ -374,7 +375,7 @@ fn convert_script(
         triangles: stream.triangles.len(),
         frames: stream.header.frames,
         bytes: scene.stream.as_bytes().len(),
-        layout: text_of(&layout),
+        layout: program::layout_text(&layout),
         memory: format.bytes(&layout)[0],
         format: format.name(),
         features: features::names(&stream, format),
@@ -420,16 +421,6 @@ const LISTED: usize = 20;
 
 /// What `active_triangles` of a layout means.
 const ACTIVE: &str = "    active_triangles: half as many again as the frames need, for other poses; with fewer, a frame takes longer";
-
-/// A layout as a program has it.
-fn text_of(layout: &Layout) -> String {
-    let Layout { width, rows, vertices, triangles, materials, objects, active_triangles, highlight_tables, antialias, edges, .. } = layout;
-    let several = if *objects > 1 { format!(".objects({objects})") } else { String::new() };
-    let text = format!("Layout::new({width}, {rows}).vertices({vertices}).triangles({triangles}).materials({materials}){several}");
-    let tables = if *highlight_tables > 0 { "" } else { ".without_highlight_tables()" };
-    let smooth = if *antialias { format!(".antialias(true).edges({edges})") } else { String::new() };
-    format!("{text}.active_triangles({active_triangles}){tables}{smooth}")
-}
 
 /// Says at which edges the surface is not as that of a solid body is, and which normals do not fit it.
 fn edges(line: &Line<'_>) -> Result<()> {

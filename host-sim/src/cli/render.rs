@@ -3,13 +3,13 @@
 use super::{Outcome, Usage, mesh_options::MeshOptions, outlines::OutlineOptions, parse, report, scenes};
 use anyhow::{Context, Result, ensure};
 use embedded_graphics_core::geometry::Size;
-use microphong::{Skips, Stream, format::ErrorBudget, renderer::check, stream::record::OPEN};
+use microphong::{Stream, format::ErrorBudget, renderer::check, stream::record::OPEN};
 use microphong_sim::{
     bytes::StreamBytes,
     choices::{self, Choices, Told},
     image::{self, Film},
     legend, output,
-    render::{self, Format, Picture, Settings, Style},
+    render::{self, Format, Picture, ROWS, Settings, Style},
     scene::Scene,
     shader::Shader,
 };
@@ -64,7 +64,7 @@ pub(crate) struct Arguments {
     #[command(flatten)]
     outlines: OutlineOptions,
     /// Number of rows to draw at a time, as a board with little memory does. It does not change the picture.
-    #[arg(long, default_value_t = 16, value_parser = clap::value_parser!(u32).range(1..))]
+    #[arg(long, default_value_t = ROWS, value_parser = clap::value_parser!(u32).range(1..))]
     band_rows: u32,
     /// Paint each triangle in a colour that shows the method which auto chooses for it, with a legend below the picture. Dark parts of the picture
     /// stay darker.
@@ -103,22 +103,20 @@ enum Gamma {
 /// The stream of a scene with the neighbours of its triangles, from which outlines are found; `None`, with a note, if a mesh has too many triangles.
 /// `lines` are an error then.
 fn smooth(scene: &Scene, lines: bool) -> Result<Option<StreamBytes>> {
-    let most = usize::from(OPEN);
-    let stream = scene.stream.parse().with_context(|| scene.name.clone())?;
-    if stream.meshes.iter().any(|mesh| mesh.triangles as usize > most) {
+    let smooth = scene.smooth().with_context(|| scene.name.clone())?;
+    if smooth.is_none() {
         ensure!(
             !lines,
-            "{} has no lines along outlines, because one of its meshes has more than {most} triangles; use --simplify",
+            "{} has no lines along outlines, because one of its meshes has more than {OPEN} triangles; use --simplify",
             scene.name
         );
         report::error(&format!(
             "the outlines of {} are jagged, because one of its meshes has more than {} triangles; use --simplify for smooth ones",
             scene.name,
-            report::grouped(most as u64)
+            report::grouped(OPEN)
         ));
-        return Ok(None);
     }
-    scene.stream.with_neighbours().map(Some).with_context(|| scene.name.clone())
+    Ok(smooth)
 }
 
 /// What a picture shows instead of colours.
@@ -166,19 +164,19 @@ pub(crate) fn run(arguments: &Arguments) -> Result<Outcome> {
         Target::File(file)
     });
     let (width, height) = arguments.size.unwrap_or(scene.size);
+    let shader = method(arguments, &stream).with_context(|| scene.name.clone())?;
+    let usual = Settings::usual(shader, Size::new(width, height), arguments.format);
     let settings = Settings {
-        size: Size::new(width, height),
         style: Style {
-            shader: method(arguments, &stream).with_context(|| scene.name.clone())?,
             perspective_correct: arguments.perspective_correct,
             antialias: smooth.is_some(),
             outlines,
-            dither: arguments.dither || arguments.format.is_dithered() && !arguments.no_dither,
+            dither: arguments.dither || usual.style.dither && !arguments.no_dither,
             srgb: arguments.gamma == Gamma::Srgb,
-            skips: Skips::ALL,
+            ..usual.style
         },
         band_rows: arguments.band_rows,
-        format: arguments.format,
+        ..usual
     };
     check(&stream, settings.style.shader.facts(), settings.style.perspective_correct).with_context(|| scene.name.clone())?;
     if let Target::File(path) = &target {

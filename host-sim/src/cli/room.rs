@@ -12,15 +12,13 @@ use microphong_sim::{
     look::Look,
     program::{self, Features},
     quantise::Part,
-    render::{self, Format},
+    render::{self, Format, ROWS},
     shader::Shader,
 };
 use serde::Serialize;
 
 /// The commonest display, where no other picture is named.
 const USUAL: (u32, u32) = (320, 240);
-/// Rows of a band, where no board is named.
-const ROWS: u32 = 16;
 
 /// The picture of a program.
 #[derive(Clone, Copy)]

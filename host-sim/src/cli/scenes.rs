@@ -9,7 +9,7 @@ use anyhow::Result;
 use microphong::format::ErrorBudget;
 use microphong_sim::{
     render::Format,
-    scene::{self, GALLERY, NAMES, ORDINARY, SCRIPTED, Scene, VARIANTS},
+    scene::{self, NAMES, Scene},
 };
 use serde::Serialize;
 
@@ -28,7 +28,7 @@ struct Line {
 }
 
 pub(crate) fn run(arguments: &Arguments) -> Result<Outcome> {
-    for scene in NAMES.into_iter().chain(VARIANTS).chain(ORDINARY).chain(GALLERY).chain(SCRIPTED) {
+    for scene in scene::all() {
         let description = scene::description(scene);
         if arguments.json {
             report::json(&Line { scene, description })?;
