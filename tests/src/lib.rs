@@ -1,5 +1,6 @@
 //! Cross-checks of whole programs; see the files in `suite/`.
 
+pub mod browser;
 pub mod message;
 pub mod phong;
 

@@ -115,7 +115,7 @@ fn first_lines(text: &str) -> impl Iterator<Item = (usize, &str)> {
 fn doc_comments_begin_with_a_subject() {
     let (mut count, mut dangling) = (0, Vec::new());
     for path in
-        ["shared", "firmware", "host-sim", "tests", "examples", "fuzz"].iter().flat_map(|folder| sources(&repository().join(folder)))
+        ["shared", "firmware", "host-sim", "tests", "examples", "fuzz", "web"].iter().flat_map(|folder| sources(&repository().join(folder)))
     {
         for (number, line) in first_lines(&read(&path)) {
             count += 1;

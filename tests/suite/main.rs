@@ -54,3 +54,4 @@ mod transparency;
 mod verify;
 mod vertex_colours;
 mod watertight;
+mod web;
