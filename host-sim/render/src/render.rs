@@ -394,10 +394,19 @@ pub fn picture(stream: Stream<'_>, settings: &Settings, number: u32) -> Result<P
         type Output = Result<Picture>;
 
         fn in_format<C: Pixel, F: FromDrawn<C>>(self) -> Result<Picture> {
-            let Self(stream, s, number) = self;
-            let (pixels, stats) = frame_by::<C, F>(stream, s.size, s.style, s.style.shader.on(), s.band_rows, number)?;
-            Ok(Picture { rgb: image::rgb_bytes(&pixels), crc: crc(&pixels), stats })
+            let Self(stream, settings, number) = self;
+            picture_in::<C, F>(stream, settings, number)
         }
     }
     settings.format.run(View(stream, settings, number))
+}
+
+/// Draws like [`picture`], pixels `C` for a display with pixels `F`, whatever the format of the settings is. A program that calls nothing else has the
+/// loops of these formats alone.
+///
+/// # Errors
+/// Errors of [`frame`].
+pub fn picture_in<C: Pixel, F: FromDrawn<C>>(stream: Stream<'_>, s: &Settings, number: u32) -> Result<Picture> {
+    let (pixels, stats) = frame_by::<C, F>(stream, s.size, s.style, s.style.shader.on(), s.band_rows, number)?;
+    Ok(Picture { rgb: image::rgb_bytes(&pixels), crc: crc(&pixels), stats })
 }

@@ -3,6 +3,7 @@
 use crate::{
     measure::SCALE,
     panel::{PANELS, Panel},
+    pixels::FORMATS,
 };
 use microphong_models::{scene, view::Up};
 use microphong_render::{choices::Way, render::Format, shader::Shader};
@@ -55,7 +56,7 @@ impl Catalogue {
         Self {
             scenes: scene::all().map(|name| Named { name, title: scene::description(name), has_budget: false }).collect(),
             methods: Shader::CORE.map(method).into(),
-            formats: Format::ALL.map(format).into(),
+            formats: FORMATS.map(format).into(),
             panels: PANELS,
             ups: Up::ALL.map(Up::name),
             ways: Way::ALL.map(|way| WayEntry { name: way.name(), colour: way.colour() }),

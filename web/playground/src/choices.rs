@@ -1,5 +1,6 @@
 //! What a user has chosen, as the page says it.
 
+use crate::pixels::FORMATS;
 use anyhow::{Context, Result, bail};
 use microphong::format::ErrorBudget;
 use microphong_models::{
@@ -125,7 +126,7 @@ impl Choices {
 
     /// The pixel format.
     pub(crate) fn format(&self) -> Result<Format> {
-        let format = Format::ALL.into_iter().find(|format| format.name() == self.format);
+        let format = FORMATS.into_iter().find(|format| format.name() == self.format);
         format.with_context(|| format!("there is no pixel format {:?}", self.format))
     }
 }

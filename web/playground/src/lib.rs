@@ -12,6 +12,7 @@ mod estimate;
 mod measure;
 pub mod message;
 mod panel;
+mod pixels;
 mod program;
 mod session;
 

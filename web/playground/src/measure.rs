@@ -3,7 +3,7 @@
 use crate::{
     boards::{self, Boards},
     estimate::Counts,
-    program,
+    pixels, program,
 };
 use anyhow::{Context, Result};
 use embedded_graphics_core::pixelcolor::Rgb888;
@@ -12,7 +12,7 @@ use microphong_compare::{Reference, figures::Spread};
 use microphong_render::{
     choices::{self, Way},
     program::{layout_text, needs},
-    render::{self, Picture, Settings, Style},
+    render::{Picture, Settings, Style},
 };
 use serde::Serialize;
 
@@ -67,7 +67,7 @@ pub(crate) fn measured(stream: &Stream<'_>, settings: &Settings, number: u32) ->
         Ok(Errors { largest: max, most: p99, mean: rmse })
     });
     let jagged = Settings { style: Style { antialias: false, ..settings.style }, ..*settings };
-    let Picture { stats, .. } = render::picture(*stream, &jagged, number)?;
+    let Picture { stats, .. } = pixels::picture(*stream, &jagged, number)?;
     let counts = Counts::new(stream, settings.format, stats, told.as_ref().map(|told| told.choices));
     let layout = program::layout(stream, settings)?;
     Ok(Measured {
@@ -90,7 +90,7 @@ fn errors(stream: &Stream<'_>, settings: &Settings, number: u32) -> Result<Vec<O
 /// Draws the errors: the darkest pixels are right, and the brightest are off by 16 of 255 or more.
 pub(crate) fn error_picture(stream: &Stream<'_>, settings: &Settings, number: u32) -> Result<Picture> {
     let errors = errors(stream, settings, number)?;
-    let Picture { stats, .. } = render::picture(*stream, settings, number)?;
+    let Picture { stats, .. } = pixels::picture(*stream, settings, number)?;
     let rgb: Vec<u8> = errors.into_iter().flat_map(|error| error.map_or(BACKGROUND, |error| colour(error.abs()))).collect();
     Ok(Picture { rgb, crc: 0, stats })
 }

@@ -6,7 +6,7 @@ use crate::{
     command::{self, Source},
     edit, measure,
     message::{failed, packed, unpacked},
-    program,
+    pixels, program,
 };
 use anyhow::{Context, Result};
 use embedded_graphics_core::{geometry::Size, pixelcolor::Rgb888};
@@ -19,7 +19,7 @@ use microphong_models::{
 };
 use microphong_render::{
     choices as ways,
-    render::{self, Picture, Settings, Style},
+    render::{Picture, Settings, Style},
     shader::Shader,
 };
 use serde::{Deserialize, Serialize};
@@ -262,7 +262,7 @@ impl Open {
         let settings = self.settings(choices, &stream)?;
         check(&stream, settings.style.shader.facts(), settings.style.perspective_correct)?;
         let Picture { rgb, crc, stats } = match view {
-            View::Picture => render::picture(stream, &settings, choices.frame)?,
+            View::Picture => pixels::picture(stream, &settings, choices.frame)?,
             View::Ways => ways::painted_as::<Rgb888>(stream, &settings, choices.frame)?.0,
             View::Errors => measure::error_picture(&stream, &settings, choices.frame)?,
         };
