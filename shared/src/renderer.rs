@@ -167,7 +167,7 @@ impl<'a, C: Pixel> Renderer<'a, C> {
     fn fill_tables(&mut self) {
         let Self { settings, colours, ramps, scene, memory: Memory { reflectances, tables, error_bounds, .. }, .. } = self;
         let (method, ColourSettings { dither, gamma, .. }) = (settings.method, colours);
-        let (facts, ambient, is_viewer_near) = (method.facts(), scene.ambient, scene.camera.has_local_viewer());
+        let (facts, ambient, is_viewer_near) = (method.facts(), scene.ambient, features::NEAR_LIGHTS && scene.camera.has_local_viewer());
         let mut lights: heapless::Vec<Light, MAX_LIGHTS> = heapless::Vec::from_slice(scene.lights()).unwrap_or_default();
         if !features::LIGHTS && lights.is_empty() {
             // A black light takes the place of none.

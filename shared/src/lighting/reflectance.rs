@@ -5,7 +5,7 @@ use crate::{
         product::{product, unsigned_product},
         quotient::long,
     },
-    features::{COLOURS, LIGHT_SHAPES, LIGHTS, SKIPS, SUMS_LIGHTS, VERTEX_COLOURS},
+    features::{COLOURS, LIGHT_SHAPES, LIGHTS, NEAR_LIGHTS, SKIPS, SUMS_LIGHTS, VERTEX_COLOURS},
     format::{BIAS, CHANNEL, COSINE, FULL, Intensity, LEVEL, PIXEL_COSINE, UNIT},
     lighting::{
         albedo::Parts,
@@ -217,7 +217,7 @@ impl Reflectance {
         let is_plain = !LIGHT_SHAPES || !lights.iter().any(Light::has_shape);
         // There are loops for one light: a directional one, or a near one without a cone on a surface of one colour for a far viewer.
         let is_one = match lights {
-            [light] if light.kind == POINT => light.axis == [0; 3] && !is_coloured && !is_viewer_near,
+            [light] if NEAR_LIGHTS && light.kind == POINT => light.axis == [0; 3] && !is_coloured && !is_viewer_near,
             [_] => is_plain,
             _ => false,
         };
@@ -248,7 +248,7 @@ impl Reflectance {
         self.has_ramp = u8::from(!is_coloured && (one_channel || is_coarse && lights.len() == 1 && within));
         let most = (1..3).fold(0, |most, k| if diffuse[k] > diffuse[most] { k } else { most });
         self.ramp = [ambient[most], diffuse[most].into()];
-        let are_directional = lights.iter().all(|light| light.kind != POINT);
+        let are_directional = !NEAR_LIGHTS || lights.iter().all(|light| light.kind != POINT);
         let are_two = lights.len() == 2 && !one_channel && is_plain && are_directional && !is_coloured;
         // There are no loops for colours of corners in greys.
         let has_loops = holds_levels && !(is_coloured && is_gray);

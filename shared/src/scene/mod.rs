@@ -44,7 +44,7 @@ pub use outlines::Outlines;
 pub use pose::{MAX_SCALE, MIN_SCALE, Pose, QUATERNION_ERROR, STEP_ERROR};
 
 use crate::{
-    features::{ANIMATION, ANTIALIAS, COLOURS, Feature, OBJECTS, VERTEX_COLOURS},
+    features::{ANIMATION, ANTIALIAS, COLOURS, Feature, NEAR_LIGHTS, OBJECTS, VERTEX_COLOURS},
     format::{Gain, Length, MAX_LIGHTS, ROTATION},
     math::vector::dot,
     pixel::Channels,
@@ -539,7 +539,7 @@ impl<'a> Scene<'a> {
             return Err(SceneError::Perspective);
         }
         if self.camera != camera {
-            if self.camera.has_local_viewer() != camera.has_local_viewer() {
+            if NEAR_LIGHTS && self.camera.has_local_viewer() != camera.has_local_viewer() {
                 self.set_stale();
             }
             self.camera = camera;

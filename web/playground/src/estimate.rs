@@ -131,7 +131,10 @@ mod tests {
             let (core, size) = match board {
                 "mps2-an385" => (Core::CortexM3, Size::new(320, 240)),
                 "mps2-an386" => (Core::CortexM4F, Size::new(320, 240)),
-                _ => (Core::CortexM0Plus, Size::new(240, 240)),
+                "mps2-an505" => (Core::CortexM33, Size::new(320, 240)),
+                "pico" => (Core::CortexM0Plus, Size::new(240, 240)),
+                // Of others there are no estimates.
+                _ => continue,
             };
             let Some(shader) = Shader::CORE.into_iter().find(|shader| shader.name() == method) else { continue };
             if !scene::PORTFOLIO.contains(&name) {
