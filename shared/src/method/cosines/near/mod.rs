@@ -253,7 +253,7 @@ struct FromProducts<'a, const LIGHT: bool, W> {
     left: W,
 }
 
-/// The values of [`HighlightProducts`].
+/// The values of the polynomials that [`Products::patch`] fits.
 type Value = ([u32; 1], (([u32; 1], [u32; 1]), ([u32; 1], [u32; 1])));
 
 /// N·L, Q5.27, and a highlight.
