@@ -92,7 +92,7 @@ const BROKEN: [(&str, &str, [u32; 2], u32, bool); 13] = [
 ];
 
 /// Random cases that once broke a promise: family, seed and number.
-const CASES: [(&str, u64, u64); 7] = [
+const CASES: [(&str, u64, u64); 8] = [
     // Under three lights, each run of a transparent row stepped the walks of all lights.
     ("changes", 20_261_128_602, 1_425),
     // Under skies alone a glossy material has one hue. The oracle judged it in three channels.
@@ -107,6 +107,8 @@ const CASES: [(&str, u64, u64); 7] = [
     ("sameness", 992_400_003, 2_496),
     // Highlights of more than 512 of 255 at a corner.
     ("arithmetic", 99_001, 4_506),
+    // Levels at six nodes of a texture were rounded to an eighth, and a light that is far beyond white magnified that.
+    ("arithmetic", 32_001, 10_634),
 ];
 
 #[test]

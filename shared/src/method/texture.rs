@@ -139,10 +139,12 @@ impl TriangleSetup<'_> {
     /// Draws the triangle by its texture, with the light of `parts` at its nodes. Returns the number of pixels drawn; 0 if it has no texture.
     pub(crate) fn draw_parts<const N: usize>(&self, parts: [Parts; N], canvas: &mut dyn Canvas) -> u32
     where
-        Nodes<N, 3, RANGE>: Field<Value = [u32; 3]>,
+        Nodes<N, 3, BRIGHT>: Field<Value = [u32; 3]>,
     {
-        let nodes = |levels: [[i32; 3]; N]| Nodes::<N, 3, RANGE>::new(channels(levels), EXTRA).biased([bias(0); 3]);
-        let field = (nodes(parts.map(|parts| part(parts.diffuse, SIXTEENTH))), nodes(parts.map(|parts| part(parts.specular, SIXTEENTH))));
+        let brightest = |levels| map(levels, |level: i32| level.min(FULL << SIXTEENTH));
+        let nodes =
+            |levels: [[i32; 3]; N]| Nodes::<N, 3, BRIGHT>::new(channels(levels.map(brightest)), EXTRA - SIXTEENTH).biased([bias(0); 3]);
+        let field = (nodes(parts.map(|parts| parts.diffuse)), nodes(parts.map(|parts| parts.specular)));
         self.draw_textured(&field, Apart, canvas).unwrap_or(0)
     }
 }
@@ -161,17 +163,14 @@ fn place_nodes(texture: &Textured<'_>, [ab, bc, ca]: [u16; 3]) -> QuadraticNodes
 /// A sixteenth of a level is walked, because dark texels show more than 255 of ambient and diffuse light, and a quadratic goes beyond its nodes. It is the
 /// power of two that this is the logarithm of.
 const SIXTEENTH: u32 = 4;
+/// Bits of the range of levels at nodes, of which sixteenths are walked.
+const BRIGHT: u32 = RANGE + SIXTEENTH;
 /// Likewise for loops of a pixel format, which draw no brighter light: a quarter.
 const QUARTER: u32 = 2;
 
-/// These levels over a power of two, as far as the result is no more than full intensity.
-fn part(levels: [i32; 3], power: u32) -> [i32; 3] {
-    map(levels, |level| share_of(level, power))
-}
-
-/// See [`part`].
-fn share_of(level: i32, power: u32) -> i32 {
-    ((level + (1 << (power - 1))) >> power).min(FULL)
+/// A quarter of a level, as far as that is no more than full intensity.
+fn quarter_of(level: i32) -> i32 {
+    ((level + (1 << (QUARTER - 1))) >> QUARTER).min(FULL)
 }
 
 /// A walked sixteenth as an intensity, which may be beyond black and white.
@@ -245,7 +244,7 @@ fn draw<C: Pixel, S, const CH: usize>(
 where
     S: PixelShader<(Colour, [u32; CH]), Pixel = C> + PixelShader<(Colour, ([u32; CH], [u32; CH])), Pixel = C>,
 {
-    let light = light.map(|levels| map(levels, |level| scaled(share_of(level, QUARTER))));
+    let light = light.map(|levels| map(levels, |level| scaled(quarter_of(level))));
     let spread = |levels: &[[i32; 3]; CH]| levels.iter().fold(0, |most, &[a, b, c]| most.max((a.max(b).max(c) - a.min(b).min(c)) as u32));
     let range = || spread(&light).saturating_mul(1 << QUARTER).max(spread(&highlights));
     let brightest = |levels: &[[i32; 3]; CH]| levels.iter().fold(0, |most, levels| most.max(largest(levels)));
