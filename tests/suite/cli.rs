@@ -1090,7 +1090,7 @@ fn convert_refuses_what_a_board_would_refuse() {
     place.fails(&["convert", "o13.toml", "--board", "pico", "-o", "no.tri"], 1, &["13 objects", "room for 12"]);
     place.fails(&["convert", "label.toml", "--board", "lm3s6965evb", "-o", "no.tri"], 1, &["no fonts", "labels"]);
     place.fails(&["convert", "lines.toml", "--board", "pico", "-o", "no.tri"], 1, &["no lines along outlines", "feature antialias"]);
-    place.fails(&["convert", "large.obj", "--board", "lm3s6965evb", "-o", "no.tri"], 1, &["room for 57344", "--simplify"]);
+    place.fails(&["convert", "large.obj", "--board", "lm3s6965evb", "-o", "no.tri"], 1, &["room for 49152", "--simplify"]);
 }
 
 /// A mesh for which there is no room ends with the number for --simplify for which there is, and with the error that --simplify then reports.

@@ -463,23 +463,26 @@ impl<C: Pixel, L: Into<WithHighlight>> Shades<Coloured<L>> for NeutralRgb<C> {
     }
 }
 
-/// Three channels under any number of lights: ambient light, to which the light at a pixel is added.
+/// Colours under any number of lights: ambient light, to which the light at a pixel is added. In greys all channels are the same, and their level is an
+/// index of the table of colours.
 #[derive(Clone, Copy, Debug)]
-pub struct SummedRgb<'a, C> {
+pub struct SummedColours<'a, C: Pixel> {
     /// The levels of ambient light, as the sums of the first light contain them.
     pub(super) ambient: ByTurns<&'a Sums, C>,
+    /// The table of greys.
+    pub(super) greys: &'a [C::Stored; RAMP],
     /// Fraction bits that levels have more than an intensity.
     pub(super) bits: u32,
 }
 
-impl<C: Pixel> ByRows for SummedRgb<'_, C> {
+impl<C: Pixel> ByRows for SummedColours<'_, C> {
     #[inline(always)]
     fn step_row(&mut self) {
         self.ambient.step_row();
     }
 }
 
-impl<C: Pixel> LitColours for SummedRgb<'_, C> {
+impl<C: Pixel> LitColours for SummedColours<'_, C> {
     type Pixel = C;
 
     const TABLED: bool = false;
@@ -489,11 +492,14 @@ impl<C: Pixel> LitColours for SummedRgb<'_, C> {
     }
 }
 
-impl<C: Pixel> SummedRgb<'_, C> {
+impl<'a, C: Pixel> SummedColours<'a, C> {
     /// The colours where ambient light is that of these sums, for even rows and for odd ones.
     #[inline(always)]
-    pub(crate) fn in_ambient<'s>(&self, [even, odd]: &'s [Sums; 2]) -> SummedRgb<'s, C> {
-        SummedRgb { ambient: ByTurns::new([even, odd]), bits: self.bits }
+    pub(crate) fn in_ambient<'s>(&self, [even, odd]: &'s [Sums; 2]) -> SummedColours<'s, C>
+    where
+        'a: 's,
+    {
+        SummedColours { ambient: ByTurns::new([even, odd]), ..*self }
     }
 
     /// The levels of this diffuse light and of ambient light.
@@ -519,12 +525,18 @@ impl<C: Pixel> SummedRgb<'_, C> {
     #[inline(always)]
     pub(crate) fn mixed(&self, [r, g, b]: [i32; 3]) -> C {
         // Armv7-M clamps by one instruction.
-        let level = |level: i32| (level >> (self.bits & 31)).clamp(0, (1 << (8 + INTENSITY)) - 1) << (CHANNEL - INTENSITY);
+        let intensity = |level: i32, more: i32| (level >> (self.bits & 31)).wrapping_add(more).clamp(0, (1 << (8 + INTENSITY)) - 1);
+        if C::GRAY {
+            // Levels of the table have eight bits, and what is added for rounding is half a step of the display.
+            let more = const { (half_step(8) - half_step(C::LEVELS[0])) >> (CHANNEL - INTENSITY) };
+            return C::ramped(self.greys, (intensity(r, more) + (BIAS << INTENSITY)) as u32, INTENSITY);
+        }
+        let level = |level: i32| intensity(level, 0) << (CHANNEL - INTENSITY);
         C::mixed([level(r), level(g), level(b)])
     }
 }
 
-impl<C: Pixel> Shades<Summed> for SummedRgb<'_, C> {
+impl<C: Pixel> Shades<Summed> for SummedColours<'_, C> {
     #[inline(always)]
     fn colour(&self, _: u32, sum: Summed) -> C {
         self.mixed(self.levels(sum))

@@ -5,7 +5,7 @@ use crate::{
     format::{BIAS, CHANNEL, COSINE, FULL, INTENSITY, LEVEL, WALK},
     lighting::{
         albedo::Albedo,
-        constant_lights::{ColouredRgb, FACTOR, NeutralRgb, OneLightRamp, OneLightRgb, SummedRgb, Sums, Tint, TintLevel, TwoLightsRgb},
+        constant_lights::{ColouredRgb, FACTOR, NeutralRgb, OneLightRamp, OneLightRgb, SummedColours, Sums, Tint, TintLevel, TwoLightsRgb},
         reflectance::{LitMaterial, Reflectance},
     },
     math::vector::zip,
@@ -142,9 +142,9 @@ impl<'a, C: Pixel> MaterialTables<'a, C> {
 
     /// The colours where light is summed. Domain: [`Reflectance::sums_lights`].
     #[inline(always)]
-    pub(crate) fn summed_rgb(&self) -> SummedRgb<'a, C> {
-        let OneLightRgb(ambient) = self.sums();
-        SummedRgb { ambient, bits: CHANNEL - INTENSITY - self.reflectance.excess() }
+    pub(crate) fn summed_colours(&self) -> SummedColours<'a, C> {
+        let (OneLightRgb(ambient), [greys, _]) = (self.sums(), self.ramps.squares());
+        SummedColours { ambient, greys, bits: CHANNEL - INTENSITY - self.reflectance.excess() }
     }
 
     /// The colour under one light from `[N·L, N·H]` (Q2.30), on even rows and on odd ones.

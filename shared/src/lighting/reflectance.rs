@@ -221,7 +221,7 @@ impl Reflectance {
             [_] => is_plain,
             _ => false,
         };
-        // Loops for other lights have three channels, and in one channel the loops for one light have no room for the brightest levels.
+        // Loops for other lights have three channels except in greys, and in one channel loops for one light have no room for the brightest levels.
         let are_several = SUMS_LIGHTS && !is_one && !lights.is_empty();
         let is_bright = || terms.iter().map(|&term| u32::from(level(largest(term), 8))).sum::<u32>() + (1 << LEVEL) >= LARGEST;
         let one_channel = !COLOURS || are_one_channel && (is_gray || !(is_coloured || holds_levels && (are_several || is_bright())));
@@ -254,7 +254,7 @@ impl Reflectance {
         let has_loops = holds_levels && !(is_coloured && is_gray);
         self.lights = match has_loops && fits {
             true if is_one || are_two => lights.len() as u8,
-            _ if has_loops && are_several && !one_channel => SUMMED,
+            _ if has_loops && are_several && (is_gray || !one_channel) => SUMMED,
             _ => 0,
         };
         self.has_two_lights = u8::from(are_two && fits);
@@ -365,7 +365,7 @@ impl Reflectance {
     #[inline]
     #[must_use]
     pub(crate) fn sums_lights(&self) -> bool {
-        SUMS_LIGHTS && COLOURS && self.lights == SUMMED
+        SUMS_LIGHTS && self.lights == SUMMED
     }
 
     /// [`Self::highlight_threshold`] of a material without highlights, greater than every N·H.

@@ -230,6 +230,11 @@ impl<const QUADRATICS: bool> Loops for Auto<QUADRATICS> {
                 let channels = || channels(corner_levels(setup, shading, uniform));
                 Some(shading.fill_three(setup, channels, raise, |plane| plane, band))
             }
+            // In greys vertices have no levels where lights are summed.
+            Choice::Linear(raise) if C::GRAY && tables.reflectance.sums_lights() => {
+                let levels = || corner_levels(setup, shading, uniform).map(|[level, ..]| level + raise);
+                Some(Shading::fill_one(setup, levels, tables, band))
+            }
             Choice::Linear(raise) if THREE => Some(gouraud::draw_three(setup, shading, raise, tables, band)),
             Choice::Linear(raise) => Some(gouraud::draw_one(setup, raise, tables, band)),
             Choice::Quadratic if QUADRATICS && under_two => {

@@ -112,9 +112,9 @@ pub(crate) fn draw<C: Pixel>(
         return None;
     }
     let lengths = Lengths::of(setup, is_steep)?;
-    // Greys have one channel, in which nothing is summed.
-    if LIGHTS && !C::GRAY && reflectance.lights() > 1 {
-        return if reflectance.sums_lights() {
+    if LIGHTS && reflectance.lights() > 1 {
+        // In greys the light of two is summed as well.
+        return if C::GRAY || reflectance.sums_lights() {
             summed::draw::<C, false>(setup, shading, &lengths, tables, band)
         } else {
             quotient::draw_two(setup, &lengths, tables, band)

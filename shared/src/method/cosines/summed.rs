@@ -16,7 +16,7 @@ use crate::{
     },
     lighting::{
         albedo::{Albedo, SHARE},
-        constant_lights::{DiffuseOnly, LitColours, SUMMED, Summed, SummedRgb, SurfaceColour, cosine},
+        constant_lights::{DiffuseOnly, LitColours, SUMMED, Summed, SummedColours, SurfaceColour, cosine},
         lights::Viewer,
         material_tables::MaterialTables,
         summed::{Sides, at_vertex, part},
@@ -111,7 +111,7 @@ impl SummedLights {
         lookup: QuotientLookup<'_>,
         tables: MaterialTables<'_, C>,
     ) {
-        let (material, full) = (tables.reflectance, tables.summed_rgb().diffuse());
+        let (material, full) = (tables.reflectance, tables.summed_colours().diffuse());
         let sides = Sides::of_triangle([a[3], b[3], c[3]], setup.triangle.min_normal_length);
         self.corners = [[a[0], b[0], c[0]], [a[1], b[1], c[1]], [a[2], b[2], c[2]]];
         if VERTEX_COLOURS && setup.albedos().is_some() {
@@ -161,7 +161,7 @@ impl SummedLights {
 }
 
 /// Draws `setup`. `NEAR` tells whether a light or the viewer is near. `None` if a highlight or a near light is too steep, or too near.
-#[inline(never)]
+#[inline(always)]
 pub(super) fn draw<C: Pixel, const NEAR: bool>(
     setup: &TriangleSetup<'_>,
     shading: &Shading<'_>,
@@ -169,8 +169,31 @@ pub(super) fn draw<C: Pixel, const NEAR: bool>(
     tables: MaterialTables<'_, C>,
     band: &mut Band<'_, C>,
 ) -> Option<u32> {
-    let (lookup, mut colours) = (QuotientLookup::new(tables.reflectance.table()?), tables.summed_rgb());
-    let one_colour = if setup.has_texture() { None } else { setup.albedos().and_then(Albedo::one) };
+    if C::GRAY {
+        draw_channels::<C, NEAR, 1>(|[luma, ..]| [luma], setup, shading, lengths, tables, band)
+    } else {
+        draw_channels::<C, NEAR, 3>(|channels| channels, setup, shading, lengths, tables, band)
+    }
+}
+
+/// [`draw`] in the channels that `wanted` picks.
+#[inline(never)]
+fn draw_channels<C: Pixel, const NEAR: bool, const CH: usize>(
+    wanted: impl Fn([[i32; 3]; 3]) -> [[i32; 3]; CH],
+    setup: &TriangleSetup<'_>,
+    shading: &Shading<'_>,
+    lengths: &Lengths,
+    tables: MaterialTables<'_, C>,
+    band: &mut Band<'_, C>,
+) -> Option<u32>
+where
+    Summed: FromValues<HalfReciprocal, [u32; CH]>,
+{
+    let (lookup, mut colours) = (QuotientLookup::new(tables.reflectance.table()?), tables.summed_colours());
+    // The general loop draws colours at corners, and textures, in greys.
+    let is_painted = !C::GRAY && setup.albedos().is_some();
+    let has_texture = is_painted && setup.has_texture();
+    let one_colour = if is_painted && !has_texture { setup.albedos().and_then(Albedo::one) } else { None };
     let mut lights = SummedLights::default();
     let mut near = NearTerms::new();
     let ambient;
@@ -197,15 +220,15 @@ pub(super) fn draw<C: Pixel, const NEAR: bool>(
     let [without_highlight, without_light] = lights.without;
     setup.count(band.top, &mut band.counts.without_highlight, without_highlight);
     setup.count(band.top, &mut band.counts.without_light, without_light);
-    let patch = || (sums(setup, lengths, &lights.corners), lengths.square(setup));
+    let patch = || (sums(setup, lengths, &lights.corners, &wanted), lengths.square(setup));
     let by_cosine = tables.reflectance.table()?.by_cosine();
     let shader =
         OneByOne::<C, NEAR> { colours, lookup, by_cosine, lengths: HalfRsqrt::get(), lights, near: &near, row: setup.gradients.row() };
-    if !NEAR && setup.has_texture() {
+    if !NEAR && has_texture {
         let texels = setup.texels()?;
         return Some(setup.fill(|| (Column, (texels, ByColumn(patch()))), shader, band));
     }
-    if VERTEX_COLOURS && let (Some(albedos), None) = (setup.albedos(), one_colour) {
+    if is_painted && let (Some(albedos), None) = (setup.albedos(), one_colour) {
         return is_plane(setup, albedos).then(|| setup.fill(|| (Column, ByColumn((colour(setup, albedos), patch()))), shader, band));
     }
     if lights.ending.is_empty() && lights.highlights.is_empty() && (!NEAR || near.is_empty()) {
@@ -220,12 +243,25 @@ fn at_corners(setup: &TriangleSetup<'_>, shading: &Shading<'_>) -> [[i32; 4]; 3]
     map(setup.vertices(), |vertex| at_vertex(&shading.reflectance, shading.lighting.sources(), wide(vertex.normal)))
 }
 
-/// The numerators of sums of diffuse light.
+/// The numerators of sums of diffuse light, in the channels that `wanted` picks.
 #[inline(never)]
-fn sums(setup: &TriangleSetup<'_>, lengths: &Lengths, corners: &[[i32; 3]; 3]) -> Plane<3> {
+fn sums<const CH: usize>(
+    setup: &TriangleSetup<'_>,
+    lengths: &Lengths,
+    corners: &[[i32; 3]; 3],
+    wanted: impl Fn([[i32; 3]; 3]) -> [[i32; 3]; CH],
+) -> Plane<CH> {
     let node = |sum: i32| sum.wrapping_add(1 << (LEVEL - NODE - 1)) >> (LEVEL - NODE);
-    let nodes = map(*corners, |channel| map(lengths.apply(&channel), node));
-    Nodes::<3, 3, RANGE>::new(nodes, LEVEL - NODE).fit(setup.gradients)
+    let nodes = wanted(map(*corners, |channel| map(lengths.apply(&channel), node)));
+    Nodes::<3, CH, RANGE>::new(nodes, LEVEL - NODE).fit(setup.gradients)
+}
+
+/// In greys all channels are the same.
+impl FromValues<HalfReciprocal, [u32; 1]> for Summed {
+    #[inline(always)]
+    fn from_values(&HalfReciprocal(half_reciprocal): &HalfReciprocal, _: u16, [luma]: [u32; 1]) -> Self {
+        Self([upper(luma as i32, half_reciprocal); 3])
+    }
 }
 
 impl FromValues<HalfReciprocal, [u32; 3]> for Summed {
@@ -240,12 +276,12 @@ impl FromValues<HalfReciprocal, [u32; 3]> for Summed {
 const _: () = assert!(SUMMED == LEVEL - 3);
 
 /// The value at a pixel: its column, the numerators of the sums, and |N|².
-type Value = (i32, ([u32; 3], [u32; 1]));
+type Value<const CH: usize> = (i32, ([u32; CH], [u32; 1]));
 
 /// Adds lights one by one to the sums. Their numerators stand in memory, since there may be any number; they are evaluated at the column of a pixel.
 #[derive(Clone, Copy)]
-struct OneByOne<'a, C, const NEAR: bool> {
-    colours: SummedRgb<'a, C>,
+struct OneByOne<'a, C: Pixel, const NEAR: bool> {
+    colours: SummedColours<'a, C>,
     lookup: QuotientLookup<'a>,
     by_cosine: CosineLookup<'a>,
     lengths: &'a HalfRsqrt,
@@ -255,7 +291,7 @@ struct OneByOne<'a, C, const NEAR: bool> {
     row: i32,
 }
 
-impl<C, const NEAR: bool> OneByOne<'_, C, NEAR> {
+impl<C: Pixel, const NEAR: bool> OneByOne<'_, C, NEAR> {
     #[inline(always)]
     fn jump(&self, rows: i32) {
         self.lights.ending.iter().for_each(|term| term.jump(rows));
@@ -269,7 +305,10 @@ impl<C, const NEAR: bool> OneByOne<'_, C, NEAR> {
 impl<C: Pixel, const NEAR: bool> OneByOne<'_, C, NEAR> {
     /// The levels of ambient and diffuse light at a pixel, and the highlights of near lights.
     #[inline(always)]
-    fn diffuse(&self, column: i32, sums: [u32; 3], half_reciprocal: &HalfReciprocal) -> [[i32; 3]; 2] {
+    fn diffuse<const CH: usize>(&self, column: i32, sums: [u32; CH], half_reciprocal: &HalfReciprocal) -> [[i32; 3]; 2]
+    where
+        Summed: FromValues<HalfReciprocal, [u32; CH]>,
+    {
         let levels = self.colours.levels(Summed::from_values(half_reciprocal, 0, sums));
         let levels = self.lights.ending.iter().fold(levels, |levels, term| {
             let DiffuseOnly(level) = DiffuseOnly::from_values(half_reciprocal, 0, term.at(column));
@@ -312,11 +351,14 @@ impl<C: Pixel, const NEAR: bool> ByRows for OneByOne<'_, C, NEAR> {
     }
 }
 
-impl<C: Pixel, const NEAR: bool> PixelShader<Value> for OneByOne<'_, C, NEAR> {
+impl<C: Pixel, const NEAR: bool, const CH: usize> PixelShader<Value<CH>> for OneByOne<'_, C, NEAR>
+where
+    Summed: FromValues<HalfReciprocal, [u32; CH]>,
+{
     type Pixel = C;
 
     #[inline(always)]
-    fn shade(&self, (column, (sums, [square])): Value) -> C {
+    fn shade(&self, (column, (sums, [square])): Value<CH>) -> C {
         let half_reciprocal = HalfReciprocal(self.lengths.rsqrt(square) as i32);
         let [levels, near] = self.diffuse(column, sums, &half_reciprocal);
         self.colours.mixed(self.with_highlights(column, levels, near, &half_reciprocal))
@@ -324,13 +366,16 @@ impl<C: Pixel, const NEAR: bool> PixelShader<Value> for OneByOne<'_, C, NEAR> {
 }
 
 /// The value at a pixel of a surface whose colour is walked: the column, the colour, and what follows in [`Value`].
-type ColouredValue<S> = (i32, (S, ([u32; 3], [u32; 1])));
+type ColouredValue<S, const CH: usize> = (i32, (S, ([u32; CH], [u32; 1])));
 
-impl<C: Pixel, S: SurfaceColour, const NEAR: bool> PixelShader<ColouredValue<S>> for OneByOne<'_, C, NEAR> {
+impl<C: Pixel, S: SurfaceColour, const NEAR: bool, const CH: usize> PixelShader<ColouredValue<S, CH>> for OneByOne<'_, C, NEAR>
+where
+    Summed: FromValues<HalfReciprocal, [u32; CH]>,
+{
     type Pixel = C;
 
     #[inline(always)]
-    fn shade(&self, (column, (colour, (sums, [square]))): ColouredValue<S>) -> C {
+    fn shade(&self, (column, (colour, (sums, [square]))): ColouredValue<S, CH>) -> C {
         let half_reciprocal = HalfReciprocal(self.lengths.rsqrt(square) as i32);
         let [levels, near] = self.diffuse(column, sums, &half_reciprocal);
         let painted = self.colours.painted(levels, self.lights.ambient, colour.shares());
