@@ -99,9 +99,24 @@ impl Display for Framebuffer {
     }
 }
 
-/// Memory and start of a board with a frame buffer and these methods. It is a macro, because the sizes of statics cannot depend on a type parameter.
+/// Memory and start of a board with a frame buffer. It draws the stream with these methods, or shows what `|display| ...` draws. It is a macro, because the
+/// sizes of statics cannot depend on a type parameter.
 #[macro_export]
 macro_rules! framebuffer_board {
+    (|$display:ident| $show:expr) => {
+        /// The host finds it by this name.
+        #[unsafe(no_mangle)]
+        static mut FRAMEBUFFER: [u16; ::microphong_firmware::framebuffer::LENGTH] = [0; ::microphong_firmware::framebuffer::LENGTH];
+
+        /// Shows pictures.
+        #[::microphong_firmware::entry]
+        fn main() -> ! {
+            let picture = &raw mut FRAMEBUFFER;
+            // SAFETY: nothing else in the program names it, and `main` runs once.
+            let $display = &mut ::microphong_firmware::framebuffer::Framebuffer::new(unsafe { &mut *picture });
+            $show
+        }
+    };
     ($shaders:expr) => {
         use ::embedded_graphics::pixelcolor::{Rgb565, RgbColor};
         use ::microphong::Layout;
@@ -109,19 +124,14 @@ macro_rules! framebuffer_board {
 
         const LAYOUT: Layout = framebuffer::LAYOUT;
 
-        /// The host finds it by this name.
-        #[unsafe(no_mangle)]
-        static mut FRAMEBUFFER: [u16; framebuffer::LENGTH] = [0; framebuffer::LENGTH];
         static mut BAND: [Rgb565; LAYOUT.band()] = [Rgb565::BLACK; LAYOUT.band()];
         static mut MEMORY: [u64; LAYOUT.words::<Rgb565>()] = [0; LAYOUT.words::<Rgb565>()];
 
-        /// Draws the stream.
-        #[::microphong_firmware::entry]
-        fn main() -> ! {
-            let (picture, band, memory) = (&raw mut FRAMEBUFFER, &raw mut BAND, &raw mut MEMORY);
+        ::microphong_firmware::framebuffer_board!(|display| {
+            let (band, memory) = (&raw mut BAND, &raw mut MEMORY);
             // SAFETY: nothing else in the program names them, and `main` runs once.
-            let (picture, band, memory) = unsafe { (&mut *picture, &mut *band, &mut *memory) };
-            run(&mut framebuffer::Framebuffer::new(picture), &mut OneCore { band }, &LAYOUT, memory, $shaders)
-        }
+            let (band, memory) = unsafe { (&mut *band, &mut *memory) };
+            run(display, &mut OneCore { band }, &LAYOUT, memory, $shaders)
+        });
     };
 }

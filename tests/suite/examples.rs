@@ -1,21 +1,28 @@
-//! The firmware in examples/: what its displays show is drawn here by the same code, the documents show its text, and each program is short.
+//! The firmware in examples/: what its displays show is drawn here by the same code and on emulated processors, two programs run as a whole, the
+//! documents show their text, and each program is short.
 //!
 //! `MICROPHONG_BLESS=1 cargo test -p microphong-tests examples` makes pictures and streams the standard.
 
 use crate::golden::{bless, check_pixels, root};
-use embedded_graphics::{pixelcolor::Rgb565, prelude::*};
+use embedded_graphics::{
+    pixelcolor::{IntoStorage, Rgb565},
+    prelude::*,
+    primitives::Rectangle,
+};
 use embedded_graphics_simulator::{OutputSettings, SimulatorDisplay};
-use microphong::{Layout, Picture, Pose, RenderError, Renderer, Stats, Stream, format::Rotation, pixel};
+use microphong::{Layout, RenderError, Renderer, Stats, Stream, pixel};
+use microphong_sim::board::{
+    self, Board, Until, build,
+    elf::Elf,
+    example::{self, Example},
+};
 use microphong_tests::program;
+use scenes::{TEN_PAST_TEN, esp32c3_gc9a01, nrf52840_gc9a01, rp2350_st7789, stm32f411_ili9341, tilt};
 use std::{fmt::Debug, fs, path::PathBuf, process::Command};
 
 #[path = "../../examples/backdrop.rs"]
 #[expect(dead_code, reason = "the example's `main`")]
 mod backdrop;
-#[path = "../../examples/esp32c3-gc9a01/src/scene.rs"]
-mod esp32c3_gc9a01;
-#[path = "../../examples/nrf52840-gc9a01/src/scene.rs"]
-mod nrf52840_gc9a01;
 #[path = "../../examples/objects.rs"]
 #[expect(dead_code, reason = "the example's `main`")]
 mod objects;
@@ -24,10 +31,10 @@ mod objects;
 mod redraw;
 #[path = "../../examples/rp2040-ssd1306/src/scene.rs"]
 mod rp2040_ssd1306;
-#[path = "../../examples/rp2350-st7789/src/scene.rs"]
-mod rp2350_st7789;
-#[path = "../../examples/stm32f411-ili9341/src/scene.rs"]
-mod stm32f411_ili9341;
+// The firmware's own file: its programs draw the same.
+#[macro_use]
+#[path = "../../firmware/src/scenes.rs"]
+mod scenes;
 
 const NAMES: [&str; 5] = ["esp32c3-gc9a01", "nrf52840-gc9a01", "rp2040-ssd1306", "rp2350-st7789", "stm32f411-ili9341"];
 
@@ -36,18 +43,18 @@ fn path(example: &str, file: &str) -> PathBuf {
     root().join("../examples").join(example).join(file)
 }
 
-/// Compares a picture with that in docs/examples.
-macro_rules! shows {
-    ($name:literal, $scene:ident, |$renderer:ident, $band:ident| $picture:expr) => {{
+/// Draws a picture of a scene.
+macro_rules! drawn {
+    ($scene:ident, |$renderer:ident, $band:ident| $picture:expr) => {{
         let stream = Stream::parse($scene::MESH).expect("a stream");
         has_room(&$scene::LAYOUT, &stream);
         let mut memory = vec![0; words(&$scene::LAYOUT, $scene::renderer)];
         let mut renderer = $scene::renderer(stream, &mut memory).expect("a renderer");
-        let mut display = SimulatorDisplay::new(renderer.size());
         let mut band = vec![pixel::PixelFormat::pack([0; 3]); $scene::LAYOUT.band()];
         let ($renderer, $band) = (&mut renderer, &mut band);
+        let mut display = SimulatorDisplay::new($renderer.size());
         let Ok(stats) = $picture.expect("a picture").draw(&mut display);
-        compare(concat!("examples/", $name), &stats, &display);
+        (display, stats)
     }};
 }
 
@@ -70,28 +77,94 @@ fn compare<C: PixelColor + Into<embedded_graphics::pixelcolor::Rgb888> + Debug>(
 
 #[test]
 fn displays_show_what_the_documentation_shows() {
-    shows!("esp32c3-gc9a01", esp32c3_gc9a01, |renderer, band| {
-        esp32c3_gc9a01::set(renderer.scene(), 43.0).expect("a needle");
-        Picture::of_scene(renderer, band)
-    });
-    shows!("nrf52840-gc9a01", nrf52840_gc9a01, |renderer, band| {
-        nrf52840_gc9a01::set(renderer, &tilt(), TEN_PAST_TEN).expect("hands");
-        nrf52840_gc9a01::picture(renderer, band, TEN_PAST_TEN)
-    });
+    macro_rules! shows {
+        ($name:literal, $scene:ident, $($picture:tt)*) => {
+            let (display, stats) = drawn!($scene, $($picture)*);
+            compare(concat!("examples/", $name), &stats, &display);
+        };
+    }
+    each_scene!(shows);
     shows!("rp2040-ssd1306", rp2040_ssd1306, |renderer, band| rp2040_ssd1306::picture(renderer, band, 0));
-    shows!("rp2350-st7789", rp2350_st7789, |renderer, band| rp2350_st7789::picture(renderer, band, 0, None));
-    shows!("stm32f411-ili9341", stm32f411_ili9341, |renderer, band| stm32f411_ili9341::picture(renderer, band, 0));
     for (name, drawn) in [("backdrop", backdrop::draw()), ("objects", objects::draw()), ("redraw", redraw::draw())] {
         let (display, stats) = drawn.expect("a picture");
         compare(name, &stats, &display);
     }
 }
 
-const TEN_PAST_TEN: u32 = (10 * 60 + 10) * 60;
+/// Processors of the classes that the examples are for: RISC-V as an ESP32-C3, Cortex-M4F as nRF52840 and STM32F411, Cortex-M33 as an RP2350.
+const PROCESSORS: [Board; 3] = [Board::RiscvVirt, Board::Mps2An386, Board::Mps2An505];
 
-/// A rotation as the sensor of the watch reports it: a quaternion w, x, y, z.
-fn tilt() -> Pose {
-    Pose::from_quaternion([15_488, -4_864, 2_048, 512].map(|c| Rotation::from_bits(c << 16))).expect("a rotation")
+/// All scenes in colours on each processor, pixel by pixel. The RP2040 draws its scene in its whole program, below.
+#[test]
+fn emulated_processors_draw_the_scenes() {
+    let mut expected = Vec::new();
+    macro_rules! draws {
+        ($name:literal, $scene:ident, $($picture:tt)*) => {
+            let (display, stats) = drawn!($scene, $($picture)*);
+            expected.push((format!("frame {} triangles {}", $name, stats.drawn), in_the_corner(&display)));
+        };
+    }
+    each_scene!(draws);
+    for board in PROCESSORS {
+        let elf = Elf::read(&build::program(board, "scenes").expect("a program")).expect("a program");
+        let recording = board::run(board, &elf, Until::LastFrame(expected.len())).expect("pictures");
+        assert_eq!(recording.pictures.len(), expected.len(), "{board}");
+        for ((line, pixels), (logged, shown)) in expected.iter().zip(recording.log.iter().zip(&recording.pictures)) {
+            assert_eq!(logged, line, "{board}");
+            assert_eq!(differing(pixels, shown), 0, "{board}: {line}");
+        }
+    }
+}
+
+/// Pixels of a board's display that shows a picture in its corner, on black.
+fn in_the_corner(picture: &SimulatorDisplay<Rgb565>) -> Vec<u32> {
+    let (width, height) = Board::Mps2An386.size();
+    let pixel = |at| if picture.bounding_box().contains(at) { picture.get_pixel(at) } else { Rgb565::BLACK };
+    Rectangle::new(Point::zero(), Size::new(width, height)).points().map(|at| pixel(at).into_storage().into()).collect()
+}
+
+/// The number of pixels in which two pictures differ.
+fn differing(one: &[u32], other: &[u32]) -> usize {
+    assert_eq!(one.len(), other.len());
+    one.iter().zip(other).filter(|(a, b)| a != b).count()
+}
+
+/// Frames of a program that runs as a whole: the first, and one that follows another.
+const FRAMES: u32 = 2;
+
+/// Runs the program of an example on its emulated board. Returns its log, and the pictures that its display has shown.
+fn whole(example: Example) -> (Vec<String>, Vec<Vec<u32>>) {
+    let elf = Elf::read(&build::example(example).expect("a program")).expect("a program");
+    let recording = example::run(example, &elf, FRAMES as usize).expect("pictures");
+    (recording.log, recording.pictures)
+}
+
+/// Everything between start-up code and the light of the OLED: driver, I2C and the display's commands.
+#[test]
+fn the_rp2040_runs_its_whole_program() {
+    let (log, pictures) = whole(Example::Rp2040Ssd1306);
+    for (number, shown) in (0..FRAMES).zip(pictures) {
+        let (display, stats) = drawn!(rp2040_ssd1306, |renderer, band| rp2040_ssd1306::picture(renderer, band, number));
+        let pixels: Vec<u32> = display.bounding_box().points().map(|at| display.get_pixel(at).is_on().into()).collect();
+        assert_eq!(log[number as usize], format!("frame {number}: {} triangles", stats.drawn));
+        assert_eq!(differing(&pixels, &shown), 0, "frame {number}");
+    }
+}
+
+/// Everything between start-up code and the panel's memory: driver, SPI and the panel's commands. The picture shows how many frames a second the emulated
+/// board draws, which is in the log as well.
+#[test]
+fn the_rp2350_runs_its_whole_program() {
+    let (log, pictures) = whole(Example::Rp2350St7789);
+    let mut rate = None;
+    for (number, shown) in (0..FRAMES).zip(pictures) {
+        let (display, stats) = drawn!(rp2350_st7789, |renderer, band| rp2350_st7789::picture(renderer, band, number, rate));
+        let pixels: Vec<u32> = display.bounding_box().points().map(|at| display.get_pixel(at).into_storage().into()).collect();
+        let told = log[number as usize].strip_prefix(&format!("frame {number}: {} triangles, Some(", stats.drawn));
+        rate = told.and_then(|told| told.split(')').next()?.parse::<u64>().ok());
+        assert!(rate.is_some_and(|rate| (1..100).contains(&rate)), "{}", log[number as usize]);
+        assert_eq!(differing(&pixels, &shown), 0, "frame {number}");
+    }
 }
 
 /// The watch that draws partially shows what one shows that begins at the same time.

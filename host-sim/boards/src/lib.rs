@@ -3,8 +3,11 @@
 pub mod build;
 pub mod child;
 pub mod elf;
+pub mod example;
 mod log;
+mod parts;
 mod pico;
+mod pico2;
 mod qemu;
 pub mod sources;
 pub mod verify;

@@ -1,12 +1,20 @@
-//! The bus of the emulated chip: the crate's bus, with our serial port and DMA at their addresses, and the panel behind them.
+//! The bus of the emulated chip: the crate's bus, with our serial ports and DMA at their addresses, and the displays behind them.
 
 use super::{
     Fault,
     dma::{CHANNELS, Dma, PACED_BY_SPI1, UNPACED},
-    panel::Panel,
-    spi::Spi,
     watchdog::{self, Watchdog},
 };
+use crate::parts::{
+    alias::{self, PERIPHERAL, REGISTER},
+    i2c::I2c,
+    oled::Oled,
+    panel::Panel,
+    rtt::Memory,
+    spi::Spi,
+    waiting::Waiting,
+};
+use anyhow::{Result, bail};
 use rp2040_emu::{
     Bus as Chip,
     bus::ppb::Ppb,
@@ -16,16 +24,14 @@ use std::mem;
 
 /// Addresses of our peripherals; each appears four times: plain, toggling, setting and clearing bits.
 const SPI1: u32 = 0x4004_0000;
+const I2C0: u32 = 0x4004_4000;
 const DMA: u32 = 0x5000_0000;
 const WATCHDOG: u32 = 0x4005_8000;
-const PERIPHERAL: u32 = !0x3FFF;
 
 /// The lower half of the timer's count of microseconds, and how far time goes on where the program only waits, for a time or in vain:
 /// 0.1 ms.
 const CLOCK: u32 = 0x4005_4028;
 const CLOCK_STEP: u64 = 12_500;
-/// Cycles between two looks at the clock of one who waits.
-const LOOK: u64 = 200;
 
 /// The interrupt lines of the DMA controller start here.
 const DMA_INTERRUPT: u8 = 11;
@@ -34,11 +40,15 @@ const DMA_INTERRUPT: u8 = 11;
 const SELECT: u32 = 9;
 const DATA: u32 = 8;
 const LED: u32 = 25;
+/// Pins that the OLED hangs on, and the function that connects them with the I2C controller.
+const OLED: [usize; 2] = [4, 5];
+const FUNCTION_I2C: u32 = 3;
 
 /// A peripheral that is emulated here.
 #[derive(Clone, Copy, PartialEq, Eq)]
 enum Device {
     Spi,
+    I2c,
     Dma,
     Watchdog,
 }
@@ -46,16 +56,18 @@ enum Device {
 fn device(address: u32) -> Option<Device> {
     match address & PERIPHERAL {
         SPI1 => Some(Device::Spi),
+        I2C0 => Some(Device::I2c),
         DMA => Some(Device::Dma),
         WATCHDOG if address & 0xFFF < watchdog::SIZE => Some(Device::Watchdog),
         _ => None,
     }
 }
 
-/// The whole chip without its processors, and the panel that is wired to it.
+/// The whole chip without its processors, and the displays that are wired to it. A program uses one of them.
 pub(super) struct Bus {
     pub(super) chip: Chip,
     pub(super) panel: Panel,
+    oled: Oled,
     /// Processor cycles since the start.
     pub(super) cycle: u64,
     /// Since last cleared: an access to the fast I/O block, which takes one cycle instead of two.
@@ -64,13 +76,13 @@ pub(super) struct Bus {
     pub(super) wait: u64,
     /// The cycle that the chip's own peripherals have reached.
     noticed: u64,
-    /// When the program last looked at the clock.
-    looked: u64,
+    waiting: Waiting,
     spi: Spi,
+    i2c: I2c,
     dma: Dma,
     watchdog: Watchdog,
     /// A DMA channel waits for room in the serial port.
-    waiting: bool,
+    blocked: bool,
 }
 
 impl Bus {
@@ -78,15 +90,17 @@ impl Bus {
         Self {
             chip,
             panel,
+            oled: Oled::new(),
             cycle: 0,
             fast: false,
             wait: 0,
             noticed: 0,
-            looked: 0,
+            waiting: Waiting::default(),
             spi: Spi::default(),
+            i2c: I2c::default(),
             dma: Dma::default(),
             watchdog: Watchdog::default(),
-            waiting: false,
+            blocked: false,
         }
     }
 
@@ -97,8 +111,8 @@ impl Bus {
 
     /// Restarts the whole chip, as the watchdog does. The panel keeps its picture, and time goes on.
     pub(super) fn reset(&mut self, chip: Chip) {
-        (self.chip, self.noticed, self.waiting) = (chip, self.cycle, false);
-        (self.spi, self.dma, self.watchdog) = (Spi::default(), Dma::default(), Watchdog::after_reset());
+        (self.chip, self.noticed, self.blocked) = (chip, self.cycle, false);
+        (self.spi, self.i2c, self.dma, self.watchdog) = (Spi::default(), I2c::default(), Dma::default(), Watchdog::after_reset());
     }
 
     /// Breaks something.
@@ -112,6 +126,15 @@ impl Bus {
     /// Nobody speaks to the panel.
     pub(super) fn quiet(&self) -> bool {
         self.spi.idle() && self.dma.idle() && self.pin(SELECT)
+    }
+
+    /// The picture on the OLED, which must have been driven well.
+    pub(super) fn oled(&self) -> Result<Vec<u32>> {
+        if let Some(fault) = self.i2c.fault() {
+            bail!("the I2C controller was used wrongly: {fault}");
+        }
+        self.oled.check()?;
+        Ok(self.oled.picture())
     }
 
     fn pin(&self, number: u32) -> bool {
@@ -133,20 +156,20 @@ impl Bus {
     pub(super) fn tick(&mut self) {
         while let Some((word, when)) = self.spi.sent(self.cycle) {
             let (selected, data) = (!self.pin(SELECT), self.pin(DATA));
-            if selected {
-                self.panel.receive(data, word as u8);
-            } else {
-                self.panel.fail(|| format!("byte {word:#04x} was sent while the panel was not selected"));
-            }
-            if self.waiting {
+            self.panel.receive(selected, data, word as u8);
+            if self.blocked {
                 self.transfer(when);
             }
+        }
+        if !self.i2c.idle() {
+            let is_wired = OLED.iter().all(|&pin| self.chip.io_bank0.funcsel(pin) == FUNCTION_I2C);
+            self.i2c.tick(self.cycle, is_wired.then_some(&mut self.oled));
         }
     }
 
     /// Makes the DMA transfers that can be made at cycle `now`.
     fn transfer(&mut self, now: u64) {
-        self.waiting = false;
+        self.blocked = false;
         if self.dma.stalled {
             return;
         }
@@ -157,7 +180,7 @@ impl Bus {
                     UNPACED => {}
                     PACED_BY_SPI1 if self.spi.ready() => {}
                     PACED_BY_SPI1 => {
-                        self.waiting = true;
+                        self.blocked = true;
                         break;
                     }
                     // Nothing else asks for data here, so such a channel never moves.
@@ -196,10 +219,11 @@ impl Bus {
                 if self.spi.hung {
                     self.wait += CLOCK_STEP;
                 }
-                self.spi.read(address & 0xFFC)
+                self.spi.read(address & REGISTER)
             }
-            Device::Dma => self.dma.read(address & 0xFFC),
-            Device::Watchdog => self.watchdog.read(address & 0xFFC),
+            Device::I2c => self.i2c.read(address & REGISTER),
+            Device::Dma => self.dma.read(address & REGISTER),
+            Device::Watchdog => self.watchdog.read(address & REGISTER),
         }
     }
 
@@ -208,19 +232,13 @@ impl Bus {
         let Some(device) = device(address) else {
             return false;
         };
-        let mode = address >> 12 & 3;
-        let old = if mode == 0 { 0 } else { self.read_device(device, address) };
-        let value = match mode {
-            0 => written,
-            1 => old ^ written,
-            2 => old | written,
-            _ => old & !written,
-        };
+        let value = alias::written(address, written, || self.read_device(device, address));
         match device {
-            Device::Spi => self.spi.write(address & 0xFFC, value, self.cycle),
-            Device::Watchdog => self.watchdog.write(address & 0xFFC, value, self.cycle),
+            Device::Spi => self.spi.write(address & REGISTER, value, self.cycle),
+            Device::I2c => self.i2c.write(address & REGISTER, value, self.cycle),
+            Device::Watchdog => self.watchdog.write(address & REGISTER, value, self.cycle),
             Device::Dma => {
-                if self.dma.write(address & 0xFFC, value, written) {
+                if self.dma.write(address & REGISTER, value, written) {
                     self.transfer(self.cycle);
                 }
             }
@@ -237,14 +255,22 @@ impl Bus {
         }
         match address >> 28 {
             0xD => self.fast = true,
-            // Who looks at the clock again and again while nothing is on its way waits for a time to come: it comes in larger steps.
-            0x4 if address == CLOCK && self.spi.idle() && self.dma.idle() => {
-                self.wait += if self.cycle.saturating_sub(self.looked) < LOOK { CLOCK_STEP } else { 2 };
-                self.looked = self.cycle + self.wait;
+            0x4 if address == CLOCK && self.spi.idle() && self.i2c.idle() && self.dma.idle() => {
+                self.wait += self.waiting.look(self.cycle, CLOCK_STEP);
             }
             0x4 => self.wait += 2,
             _ => {}
         }
+    }
+}
+
+impl Memory for Chip {
+    fn peek(&self, address: u32) -> u32 {
+        self.peek32(address)
+    }
+
+    fn poke(&mut self, address: u32, value: u32) {
+        self.poke32(address, value);
     }
 }
 

@@ -1,12 +1,17 @@
 //! Processor and bus, from reset.
 
-use super::{Board, Executed, Fault, bus::Bus, cycles, panel::Panel, rtt::Rtt};
-use crate::elf::Elf;
-use anyhow::{Context, Result, ensure};
+use super::{Board, Executed, Fault, bus::Bus, cycles};
+use crate::{
+    elf::Elf,
+    parts::{
+        flash::{FLASH, flashed, word},
+        panel::Panel,
+        rtt::Rtt,
+    },
+};
+use anyhow::{Result, ensure};
 use rp2040_emu::{Bus as Chip, core::CortexM0Plus, memory::SRAM_SIZE};
 
-/// Memory map.
-const FLASH: u32 = 0x1000_0000;
 const FLASH_SIZE: usize = 2 << 20;
 /// Bytes of the second stage of the boot loader, its checksum included; the vector table follows.
 const BOOT2: usize = 0x100;
@@ -36,13 +41,7 @@ pub(super) struct Machine {
 impl Machine {
     /// Flashes `elf` and does what the mask ROM does: checks the boot loader's second stage and goes to the program.
     pub(super) fn new(elf: &Elf) -> Result<Self> {
-        let mut flash = vec![0xFF; FLASH_SIZE];
-        for segment in elf.segments()? {
-            let start = segment.address.wrapping_sub(FLASH) as usize;
-            let place = flash.get_mut(start..).and_then(|rest| rest.get_mut(..segment.bytes.len()));
-            let place = place.with_context(|| format!("the segment at {:#010x} does not lie in flash", segment.address))?;
-            place.copy_from_slice(segment.bytes);
-        }
+        let flash = flashed(elf, FLASH_SIZE)?;
         let (stored, computed) = (word(&flash, BOOT2 - 4), boot_checksum(&flash[..BOOT2 - 4]));
         ensure!(
             stored == computed,
@@ -141,6 +140,11 @@ impl Machine {
         self.bus.led()
     }
 
+    /// The picture on the OLED, which must have been driven well.
+    pub(super) fn oled(&self) -> Result<Vec<u32>> {
+        self.bus.oled()
+    }
+
     /// Whether the panel shows a whole picture, and was driven well.
     pub(super) fn check_panel(&self) -> Result<()> {
         self.bus.panel.check()
@@ -178,10 +182,6 @@ fn booted(flash: &[u8], cycle: u64) -> ([Core; 2], Chip) {
     // Thumb state.
     core.regs.xpsr = 1 << 24;
     ([Core { core, cycle, runs: true }, Core { core: second, cycle, runs: false }], chip)
-}
-
-fn word(flash: &[u8], at: usize) -> u32 {
-    u32::from_le_bytes([flash[at], flash[at + 1], flash[at + 2], flash[at + 3]])
 }
 
 /// CRC-32/MPEG-2, bit by bit.

@@ -1,21 +1,18 @@
-//! The Pico: an RP2040 with an ST7789 panel, emulated down to the bytes on the panel's wires.
+//! The Pico: an RP2040 with an ST7789 panel or an SSD1306 OLED, emulated down to the bytes on the display's wires.
 //!
-//! The processor core and most of the chip come from the `rp2040-emu` crate; serial port, DMA and panel are ours, as the crate's do not
+//! The processor core and most of the chip come from the `rp2040-emu` crate; serial ports, DMA and displays are ours, as the crate's do not
 //! send. Time is counted with the Cortex-M0+ table of cycles, flash as if always in the cache: close to the truth, not exact.
 
 mod bus;
 mod cycles;
 mod dma;
 mod machine;
-mod panel;
-mod rtt;
-mod spi;
 mod watchdog;
 
 use super::{
     Board, Executed, Recording, Until,
     elf::{Elf, short_name},
-    log,
+    log, parts,
 };
 use anyhow::{Context, Result, bail, ensure};
 use machine::Machine;
@@ -124,6 +121,34 @@ impl Pico {
     #[must_use]
     pub fn ram(&self) -> Vec<u8> {
         self.machine.ram()
+    }
+}
+
+/// A Pico whose program uses the OLED.
+pub(super) struct Oled(Machine);
+
+impl Oled {
+    /// A board with `elf` in its flash, just switched on.
+    pub(super) fn new(elf: &Elf) -> Result<Self> {
+        Machine::new(elf).map(Self)
+    }
+}
+
+impl parts::machine::Machine for Oled {
+    fn step(&mut self) -> Result<()> {
+        self.0.step().map(drop)
+    }
+
+    fn take_log(&mut self) -> Vec<u8> {
+        self.0.take_log()
+    }
+
+    fn cycle(&self) -> u64 {
+        self.0.cycle()
+    }
+
+    fn picture(&self) -> Result<Vec<u32>> {
+        self.0.oled()
     }
 }
 

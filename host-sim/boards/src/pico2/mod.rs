@@ -1,0 +1,11 @@
+//! The Pico 2: an RP2350 with an ST7789 panel, emulated down to the bytes on the panel's wires.
+//!
+//! The first Cortex-M33 and most of the chip come from the crate `rp2350-emu`. Serial port, timer and panel are ours, and so are instructions that the
+//! crate lacks. Neither DMA nor the second processor reaches the panel. The crate counts cycles roughly, so times are approximate.
+
+mod bus;
+mod machine;
+mod missing;
+mod timer;
+
+pub(crate) use machine::Machine;
