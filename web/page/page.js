@@ -56,11 +56,19 @@ class Desk {
   }
 }
 
-// The module as the page has it in its text.
+// The bytes that are in the text of the page.
+const bytesOf = (id) => Uint8Array.from(atob($(id).textContent), (c) => c.charCodeAt(0));
+
+// The module, which another one unpacks.
 const compiled = async () => {
-  const bytes = Uint8Array.from(atob($("module").textContent.trim()), (c) => c.charCodeAt(0));
-  const unpacked = new Blob([bytes]).stream().pipeThrough(new DecompressionStream("gzip"));
-  return WebAssembly.compile(await new Response(unpacked).arrayBuffer());
+  const packed = bytesOf("module"), length = Number($("module").dataset.length);
+  const { memory, place, unpack } = (await WebAssembly.instantiate(bytesOf("unpacker"))).instance.exports;
+  // A place may be beyond the memory that was there before.
+  const packedAddress = place(packed.length);
+  new Uint8Array(memory.buffer, packedAddress, packed.length).set(packed);
+  const address = unpack(length);
+  if (!address) throw new Error("The page is damaged: build it again.");
+  return WebAssembly.compile(new Uint8Array(memory.buffer, address, length));
 };
 
 let catalogue, artist, surveyor, module, opened;
