@@ -412,3 +412,18 @@ fn the_reference_shows_what_is_seen_through_surfaces() {
     let [same, filled] = [1, 0].map(|hole| apart(&pierced(1), &pierced(hole)));
     assert!(20 * same < filled && filled > 2_000, "{same} {filled}");
 }
+
+/// Several objects are measured together, each under the lights of its own space: a method is as near to the reference as on one object.
+#[test]
+fn several_objects_are_measured_together() {
+    for name in scene::SCRIPTED {
+        let bytes = scene::load(name).expect("a scene").stream.without_outlines().or_budget(ErrorBudget::from_num(4));
+        let reference = Reference::of_objects(bytes.parse().expect("a stream"), (160, 120), 9).expect("something to see");
+        for (shader, most) in [(Shader::PHONG, 1.0), (Shader::AUTO, 5.0)] {
+            let total = reference.total(shader).expect("a picture");
+            println!("{name}, {}: {total:?}", shader.name());
+            assert!(total.max < most, "{name}, {}: {total:?}", shader.name());
+        }
+        assert!(reference.compare(Shader::PHONG).is_err_and(|error| error.to_string().contains("several objects")));
+    }
+}

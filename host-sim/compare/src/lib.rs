@@ -12,6 +12,7 @@ pub mod level;
 pub mod operations;
 pub mod page;
 mod samples;
+mod scenery;
 pub mod supersampled;
 
 use anyhow::{Context, Result, ensure};
@@ -29,6 +30,7 @@ use microphong_render::{
 };
 use operations::Operations;
 use samples::Samples;
+use scenery::Scenery;
 use std::{collections::HashSet, ops::Range};
 
 /// A difference, in 1/255, beyond which a method that makes decisions is also compared with the results of other decisions.
@@ -40,7 +42,7 @@ pub struct Reference<'s> {
     stream: Stream<'s>,
     number: u32,
     perspective_correct: bool,
-    frame: Frame,
+    scenery: Scenery,
     /// Per pixel what may be seen there.
     sights: Vec<Vec<Sight>>,
     /// The facet of each sample.
@@ -109,19 +111,30 @@ impl<'s> Reference<'s> {
     /// # Errors
     /// When no pixel shows a triangle, or the scene has several objects.
     pub fn new(stream: Stream<'s>, size: (u32, u32), number: u32) -> Result<Self> {
-        Self::of(stream, Frame::new(stream, size, number), number, false)
+        ensure_one(&stream)?;
+        Self::of(stream, size, number, false)
+    }
+
+    /// [`Self::new`] for [`Self::errors`] and [`Self::total`] alone, of a scene that may have several objects.
+    ///
+    /// # Errors
+    /// When no pixel shows a triangle, or several objects have coarser levels of detail.
+    pub fn of_objects(stream: Stream<'s>, size: (u32, u32), number: u32) -> Result<Self> {
+        Self::of(stream, size, number, false)
     }
 
     /// [`Self::new`], perspective-correct: Phong, and all that is compared with it.
     ///
     /// # Errors
-    /// When no pixel shows a triangle.
+    /// Errors of [`Self::new`].
     pub fn perspective_correct(stream: Stream<'s>, size: (u32, u32), number: u32) -> Result<Self> {
-        Self::of(stream, Frame::perspective_correct(stream, size, number), number, true)
+        ensure_one(&stream)?;
+        Self::of(stream, size, number, true)
     }
 
-    fn of(stream: Stream<'s>, frame: Frame, number: u32, perspective_correct: bool) -> Result<Self> {
-        ensure!(stream.instances.is_empty(), "the scene has several objects, and the reference draws one: compare their meshes one by one");
+    fn of(stream: Stream<'s>, size: (u32, u32), number: u32, perspective_correct: bool) -> Result<Self> {
+        let scenery = Scenery::new(stream, size, number, perspective_correct)?;
+        let frame = &scenery.whole;
         let (mut sights, mut facets, mut points) = (Vec::new(), Vec::new(), Vec::new());
         for (pixel, visible) in (0..).zip(frame.visible()) {
             let centre = [pixel % frame.size.0, pixel / frame.size.0].map(|c| f64::from(c) + 0.5);
@@ -139,21 +152,26 @@ impl<'s> Reference<'s> {
             };
             sights.push(visible.into_iter().map(|sight| sight.into_iter().map(&mut sample).collect()).collect());
         }
-        let samples = Samples::new(&frame, points);
-        let phong = samples.shade(&frame, &|facet| Ok(oracle::phong(&frame, facet)))?;
+        let samples = Samples::new(frame, points);
+        let phong = samples.shade(frame, &|index, facet| Ok(oracle::phong(scenery.lighting(index), facet)))?;
         let shown: HashSet<u32> = facets.iter().copied().collect();
-        let edges = Edges::new(&frame, |facet| shown.contains(&(facet as u32)));
+        let edges = Edges::new(frame, |facet| shown.contains(&(facet as u32)));
         let (window, row) = (Window::default(), 0);
-        let mut reference = Self { stream, number, perspective_correct, frame, sights, facets, samples, phong, edges, window, row };
+        let mut reference = Self { stream, number, perspective_correct, scenery, sights, facets, samples, phong, edges, window, row };
         let levels: Vec<_> = (0..reference.sights.len()).map(|pixel| reference.level_of(pixel)).collect();
-        (reference.window, reference.row) = ends(&levels, reference.frame.size).context("no pixel shows a triangle")?;
+        (reference.window, reference.row) = ends(&levels, reference.size()).context("no pixel shows a triangle")?;
         Ok(reference)
     }
 
     /// Width and height of the picture.
     #[must_use]
     pub fn size(&self) -> (u32, u32) {
-        self.frame.size
+        self.frame().size
+    }
+
+    /// All that may be seen.
+    fn frame(&self) -> &Frame {
+        &self.scenery.whole
     }
 
     /// The rectangle around all that is drawn, with a little space.
@@ -171,7 +189,7 @@ impl<'s> Reference<'s> {
     /// Phong's level of the brightest channel; `None` is background.
     #[must_use]
     pub fn level(&self, x: u32, y: u32) -> Option<f64> {
-        self.level_of(y as usize * self.frame.size.0 as usize + x as usize)
+        self.level_of(y as usize * self.frame().size.0 as usize + x as usize)
     }
 
     fn level_of(&self, pixel: usize) -> Option<f64> {
@@ -188,11 +206,11 @@ impl<'s> Reference<'s> {
     /// Phong shading of a sight of a pixel, in 8 bits per channel.
     fn shown(&self, pixel: usize, sight: &[usize]) -> [u8; 3] {
         let seen = sight.iter().map(|&sample| (self.facets[sample], self.phong[sample]));
-        rounded(self.frame.mixed(self.row_of(pixel), seen))
+        rounded(self.frame().mixed(self.row_of(pixel), seen))
     }
 
     fn row_of(&self, pixel: usize) -> u32 {
-        pixel as u32 / self.frame.size.0
+        pixel as u32 / self.frame().size.0
     }
 
     /// Every sight of a pixel in which a facet is seen, what is exactly seen first.
@@ -202,7 +220,7 @@ impl<'s> Reference<'s> {
 
     /// The facet of a sample.
     fn facet(&self, sample: usize) -> &Facet {
-        &self.frame.facets[self.facets[sample] as usize]
+        &self.frame().facets[self.facets[sample] as usize]
     }
 
     /// The light of a sight of a pixel, as [`level::picture`] has it, if samples have these levels.
@@ -213,10 +231,11 @@ impl<'s> Reference<'s> {
     /// The lights that a sight of a pixel may have if each of its samples has one of several `outcomes`.
     fn lights(&self, pixel: usize, sight: &[usize], outcomes: &dyn Fn(usize) -> Vec<Levels>, walked: &Walked) -> Vec<Levels> {
         let seen = sight.iter().map(|&sample| {
-            let shown = |light| walked.shown(&self.frame, self.facet(sample), light);
+            let lighting = self.scenery.lighting(self.facets[sample] as usize);
+            let shown = |light| walked.shown(lighting, self.facet(sample), light);
             (self.facets[sample], outcomes(sample).into_iter().map(shown).collect())
         });
-        self.frame.mixtures(self.row_of(pixel), seen)
+        self.frame().mixtures(self.row_of(pixel), seen)
     }
 
     /// The sight of a pixel whose Phong shading is closest to these levels, and the difference. Of triangles at equal depth the integers may show
@@ -229,12 +248,12 @@ impl<'s> Reference<'s> {
     /// All results that a method may have for a sample of a pixel, see [`oracle::outcomes`].
     fn outcomes(&self, sample: usize, pixel: usize, name: &str) -> Vec<Levels> {
         let facet = self.facet(sample);
-        oracle::outcomes(name, &self.frame, facet, self.centre(pixel), self.frame.undecided(facet)).unwrap_or_default()
+        oracle::outcomes(name, self.frame(), facet, self.centre(pixel), self.frame().undecided(facet)).unwrap_or_default()
     }
 
     /// The centre of a pixel on the screen.
     fn centre(&self, pixel: usize) -> [f64; 2] {
-        let width = self.frame.size.0 as usize;
+        let width = self.frame().size.0 as usize;
         [pixel % width, pixel / width].map(|c| c as f64 + 0.5)
     }
 
@@ -252,7 +271,8 @@ impl<'s> Reference<'s> {
     /// # Errors
     /// Errors of [`Self::compare`].
     pub fn errors(&self, shader: Shader) -> Result<Vec<Option<f64>>> {
-        let size = Size::new(self.frame.size.0, self.frame.size.1);
+        let (width, height) = self.size();
+        let size = Size::new(width, height);
         let style = Style { perspective_correct: self.perspective_correct, ..shader.into() };
         let levels = level::picture(self.stream, size, style, self.number)?;
         let walked = Walked::of(&self.stream, shader.facts());
@@ -262,12 +282,15 @@ impl<'s> Reference<'s> {
     /// Draws the frame by a method and measures it.
     ///
     /// # Errors
-    /// When the method cannot draw this scene, see [`microphong::renderer::check`], or draws none of its pixels.
+    /// When the method cannot draw this scene, see [`microphong::renderer::check`], or draws none of its pixels, or the scene has several objects.
     pub fn compare(&self, shader: Shader) -> Result<Comparison> {
+        ensure_one(&self.stream)?;
+        let frame = self.frame();
         let perspective_correct = self.perspective_correct;
         check(&self.stream, shader.facts(), perspective_correct)?;
         let name = shader.name();
-        let size = Size::new(self.frame.size.0, self.frame.size.1);
+        let (width, height) = self.size();
+        let size = Size::new(width, height);
         let style = Style { perspective_correct, ..Style::from(shader) };
         let integers = level::picture(self.stream, size, style, self.number)?;
         let settings = Settings { size, style, band_rows: size.height, format: Format::Rgb888 };
@@ -275,8 +298,8 @@ impl<'s> Reference<'s> {
         let told = level::choices(self.stream, size, style, self.number)?;
         // Of a method that chooses, what it has chosen for each triangle.
         let chosen = |facet: &Facet| told.as_ref()?.ways.get(facet.id as usize).copied().flatten();
-        let shade = |facet| shaded(&self.frame, facet, name, chosen(facet));
-        let real = self.samples.shade(&self.frame, &shade)?;
+        let shade = |_, facet| shaded(frame, facet, name, chosen(facet));
+        let real = self.samples.shade(frame, &shade)?;
         let walked = Walked::of(&self.stream, shader.facts());
 
         let mut errors = vec![None; integers.len()];
@@ -303,7 +326,7 @@ impl<'s> Reference<'s> {
             if off > UNDECIDED {
                 // The place in a texture may be rounded to the texel beside.
                 let beside = |sample: usize| -> Vec<Levels> {
-                    let light = |facet: Facet| Some(shaded(&self.frame, &facet, name, chosen(&facet)).ok()?(self.centre(pixel)));
+                    let light = |facet: Facet| Some(shaded(frame, &facet, name, chosen(&facet)).ok()?(self.centre(pixel)));
                     [real[sample]].into_iter().chain(self.facet(sample).within(self.centre(pixel)).into_iter().filter_map(light)).collect()
                 };
                 off = same(&beside);
@@ -326,7 +349,7 @@ impl<'s> Reference<'s> {
             colour_correctness: figures::colour_correctness(&pairs),
             psnr: figures::psnr(&pairs),
             similarity: figures::similarity(window.width(), window.height(), [&drawn, &wanted])?,
-            jumps: self.edges.jumps(&self.frame, &shade)?,
+            jumps: self.edges.jumps(frame, &shade)?,
             operations: Operations::of(shader.name()),
             budget: told.as_ref().map(|told| told.budget),
             choices: told.as_ref().map(|told| told.choices),
@@ -359,6 +382,12 @@ impl Window {
         let rows = picture.chunks_exact(width as usize).skip(self.rows.start as usize).take(self.height() as usize);
         rows.flat_map(|row| row.get(columns.clone()).unwrap_or_default()).copied().collect()
     }
+}
+
+/// Refuses scenes of several objects.
+fn ensure_one(stream: &Stream<'_>) -> Result<()> {
+    ensure!(stream.instances.is_empty(), "the scene has several objects, and the reference draws one: compare their meshes one by one");
+    Ok(())
 }
 
 /// The shading of a facet by a method in floating point, in the way that it has chosen if it chooses one.

@@ -6,8 +6,8 @@ use rayon::prelude::*;
 /// A point of the screen, and its place in the result.
 type Point = (usize, [f64; 2]);
 
-/// A function by which a method shades a facet.
-pub(super) type Method<'f, 'm> = dyn Fn(&'f Facet) -> Result<Shade<'f>, Unsupported> + Sync + 'm;
+/// A function by which a method shades the facet of an index.
+pub(super) type Method<'f, 'm> = dyn Fn(usize, &'f Facet) -> Result<Shade<'f>, Unsupported> + Sync + 'm;
 
 /// Points on facets. A method is set up once per facet, whatever the order of its points.
 #[derive(Clone, Debug)]
@@ -42,7 +42,7 @@ impl Samples {
             .by_facet
             .par_iter()
             .map(|(facet, points)| {
-                let shade = method(&frame.facets[*facet])?;
+                let shade = method(*facet, &frame.facets[*facet])?;
                 Ok(points.iter().map(|&(_, point)| shade(point)).collect())
             })
             .collect::<Result<_, _>>()?;

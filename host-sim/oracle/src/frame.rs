@@ -106,11 +106,8 @@ impl Frame {
         let camera = &stream.header.camera;
         let model_view = ModelView::new(camera, number);
         let lens = Lens::new(camera, Size::new(size.0, size.1));
-        let project = |eye| {
-            let ([x, y, depth], inside) = lens.project(eye);
-            inside.then(|| (real([x, y], SUBPIXEL), f64::from(depth) / f64::from(DEPTH).exp2()))
-        };
-        let facets = facets(stream, levels::drawn(&stream, Size::new(size.0, size.1)), &View::new(&lens, &model_view), &project);
+        let levels = levels::drawn(&stream, Size::new(size.0, size.1));
+        let facets = facets(stream, levels, &View::new(&lens, &model_view), &|eye| rounded(&lens, eye));
         let lights = Lights { camera, lights: stream.lights, eye: Space::eye(&model_view), world: Space::SAME };
         Self::lit_by(stream, size, &lights, facets)
     }
@@ -213,8 +210,17 @@ fn albedos(stream: Stream<'_>, mesh: &record::Mesh, id: u32) -> Option<[V3; 3]> 
     Some(albedos)
 }
 
-/// The place in pixels, and the inverse depth, of a point in the integers of eye space; `None` if its triangles have to be clipped.
-pub(super) type Project<'p> = dyn Fn([i32; 3]) -> Option<([f64; 2], f64)> + 'p;
+/// The place in pixels, and the inverse depth, of a point; `None` if its triangles have to be clipped.
+pub(super) type Projected = Option<([f64; 2], f64)>;
+
+/// The projection of a point in the integers of eye space.
+pub(super) type Project<'p> = dyn Fn([i32; 3]) -> Projected + 'p;
+
+/// The place and the inverse depth that the renderer has for a point; `None` outside the guard band.
+pub(super) fn rounded(lens: &Lens, eye: [i32; 3]) -> Projected {
+    let ([x, y, depth], inside) = lens.project(eye);
+    inside.then(|| (real([x, y], SUBPIXEL), f64::from(depth) / f64::from(DEPTH).exp2()))
+}
 
 /// The triangles of meshes as facets on the screen.
 pub(super) fn facets<'a>(

@@ -1,13 +1,13 @@
 //! Objects of a scene in one frame, where lights and viewer are seen from the space of each, and corners are not rounded to parts of a pixel.
 
 use super::{
-    frame::{Frame, facets, gain, real},
+    frame::{Frame, Projected, facets, gain, real, rounded},
     scene::{Light, Place, direction},
 };
 use anyhow::Result;
 use embedded_graphics_core::{geometry::Size, pixelcolor::Gray8};
 use microphong::{
-    Pose, Renderer, Stream,
+    Pose, Renderer, Shader, Stream,
     format::{Focal, ROTATION, UNIT},
     geometry::{lens::Lens, model_view::ModelView, projection::View},
     stream::record::{self, Camera, EYE_SPACE, PERSPECTIVE, POINT, SKY, VIEWER_LOCAL},
@@ -16,7 +16,7 @@ use microphong_models::{
     levels,
     vector::{V3, add, cross, scale, sub},
 };
-use microphong_render::{render, shader::Shader};
+use microphong_render::render;
 
 /// Another space than that of an object.
 pub(super) struct Space {
@@ -95,7 +95,7 @@ impl Lights<'_> {
 }
 
 /// The place in pixels, and the inverse depth, of a point of eye space; `None` in front of the near plane.
-fn projected(camera: &Camera, size: (u32, u32), eye: [i32; 3]) -> Option<([f64; 2], f64)> {
+fn projected(camera: &Camera, size: (u32, u32), eye: [i32; 3]) -> Projected {
     let ([x, y, z], [near, far]) = (real(eye, UNIT), real([camera.near, camera.far], UNIT));
     let focal = f64::from(size.0.min(size.1)) / 2.0 * f64::from(Focal::from_bits(camera.focal));
     let is_perspective = camera.projection == PERSPECTIVE;
@@ -113,10 +113,28 @@ impl Frame {
     /// # Errors
     /// When `size` is out of range.
     pub fn objects(stream: Stream<'_>, size: (u32, u32), number: u32, perspective_correct: bool) -> Result<Vec<Self>> {
+        Self::objects_by(stream, size, number, perspective_correct, &|camera, _, eye| projected(camera, size, eye))
+    }
+
+    /// The frames of [`Self::objects`], whose corners lie where the renderer has them. Triangles that leave the guard band are left out.
+    ///
+    /// # Errors
+    /// When `size` is out of range.
+    pub fn objects_as_drawn(stream: Stream<'_>, size: (u32, u32), number: u32, perspective_correct: bool) -> Result<Vec<Self>> {
+        Self::objects_by(stream, size, number, perspective_correct, &|_, lens, eye| rounded(lens, eye))
+    }
+
+    fn objects_by(
+        stream: Stream<'_>,
+        size: (u32, u32),
+        number: u32,
+        perspective_correct: bool,
+        project: &dyn Fn(&Camera, &Lens, [i32; 3]) -> Projected,
+    ) -> Result<Vec<Self>> {
         let picture = Size::new(size.0, size.1);
         let layout = render::layout(&stream, picture, 1);
         let mut memory = vec![0; layout.words::<Gray8>()];
-        let mut renderer = Renderer::<Gray8>::with_shader(stream, picture, &layout, &mut memory, Shader::FLAT.on())?;
+        let mut renderer = Renderer::<Gray8>::with_shader(stream, picture, &layout, &mut memory, Shader::FLAT)?;
         let scene = renderer.scene();
         scene.play(number);
         let camera = scene.camera();
@@ -128,8 +146,7 @@ impl Frame {
             let range = object.meshes();
             let full = stream.meshes[usize::from(range.start)..usize::from(range.end)].iter().filter(|mesh| mesh.error == 0);
             let meshes: Vec<_> = if stream.instances.is_empty() { levels::drawn(&stream, picture).collect() } else { full.collect() };
-            let project = |eye| projected(camera, size, eye);
-            let mut facets = facets(stream, meshes.into_iter(), &View::new(&lens, model_view), &project);
+            let mut facets = facets(stream, meshes.into_iter(), &View::new(&lens, model_view), &|eye| project(camera, &lens, eye));
             if let Some(material) = object.material() {
                 facets.iter_mut().for_each(|facet| facet.material = material.into());
             }

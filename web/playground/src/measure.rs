@@ -84,7 +84,7 @@ pub(crate) fn measured(stream: &Stream<'_>, settings: &Settings, number: u32) ->
 /// The error of each pixel that shows a triangle, as `microphong compare` measures it.
 fn errors(stream: &Stream<'_>, settings: &Settings, number: u32) -> Result<Vec<Option<f64>>> {
     let size = (settings.size.width, settings.size.height);
-    Reference::new(*stream, size, number)?.errors(settings.style.shader)
+    Reference::of_objects(*stream, size, number)?.errors(settings.style.shader)
 }
 
 /// Draws the errors: the darkest pixels are right, and the brightest are off by 16 of 255 or more.
