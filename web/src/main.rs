@@ -14,7 +14,7 @@ use std::{
 };
 
 /// Largest number of bytes of the packed module and of the one that unpacks it.
-const LARGEST: usize = 1_150_000;
+const LARGEST: usize = 1_020_000;
 
 /// Bytes in which LZMA looks for likeness: more than the module has.
 const DICTIONARY: u32 = 8 << 20;

@@ -1,4 +1,4 @@
-//! Shading methods that are chosen at run time, from the core and the literature.
+//! Shading methods that are chosen at run time, from the core and, with the feature `literature`, from the literature.
 
 use anyhow::{Context, Result};
 use microphong::{
@@ -11,6 +11,7 @@ use microphong::{
     },
     pixel::Pixel,
 };
+#[cfg(feature = "literature")]
 use microphong_literature as literature;
 use std::fmt;
 
@@ -30,8 +31,10 @@ impl Shader {
     /// The root of N·H quadratic, squared and raised at the pixel.
     pub const SQRT6: Self = Self(&Sqrt6);
     /// Linear numerators times a quadratic reciprocal length.
+    #[cfg(feature = "literature")]
     pub const RENQ: Self = Self(&literature::Renq);
     /// Linear numerators times a quadratic reciprocal length, made exact by Newton's iteration.
+    #[cfg(feature = "literature")]
     pub const RENQ_NEWTON: Self = Self(&literature::RenqNewton);
 
     /// The method `auto`: for each triangle the cheapest way within the error budget.
@@ -40,6 +43,10 @@ impl Shader {
     pub const AUTO_LINEAR: Self = Self(&Auto::<false>);
 
     /// Every method, in the order of their numbers.
+    #[cfg(not(feature = "literature"))]
+    pub const ALL: [Self; 7] = Self::CORE;
+    /// Every method, in the order of their numbers.
+    #[cfg(feature = "literature")]
     pub const ALL: [Self; 28] = {
         let [a, b, c, d, e, f, g, h, i, j, k, l, m, n, o, p, q, r, s, t, u] = literature::ALL;
         [
