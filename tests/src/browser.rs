@@ -130,13 +130,17 @@ impl Browser {
         self.ask("POST", &format!("/element/{number}/click"), &json!({}));
     }
 
-    /// Moves the mouse along points, from the first to the last with its button down.
-    pub fn drag(&self, points: &[(i64, i64)]) {
+    /// Moves a pointer, a `mouse` or a finger (`touch`), along points, from the first to the last with its button down.
+    pub fn drag(&self, pointer: &str, points: &[(i64, i64)]) {
         let step = |&(x, y): &(i64, i64)| json!({ "type": "pointerMove", "duration": 20, "x": x, "y": y });
         let mut actions: Vec<_> = points.iter().map(step).collect();
         actions.insert(1, json!({ "type": "pointerDown", "button": 0 }));
         actions.push(json!({ "type": "pointerUp", "button": 0 }));
-        self.ask("POST", "/actions", &json!({ "actions": [{ "type": "pointer", "id": "mouse", "actions": actions }] }));
+        self.ask(
+            "POST",
+            "/actions",
+            &json!({ "actions": [{ "type": "pointer", "id": pointer, "parameters": { "pointerType": pointer }, "actions": actions }] }),
+        );
     }
 
     /// Presses a key, as WebDriver names it.

@@ -19,30 +19,58 @@ use std::{
 };
 use zerocopy::FromBytes;
 
-/// The command `microphong`; built here, because a package's tests build only the package's own programs.
+/// What cargo says of all that is compiled beside the tests: a package's tests build only the package's own programs.
+static COMPILED: LazyLock<Vec<Value>> = LazyLock::new(|| {
+    let cargo = Command::new(env!("CARGO"))
+        // As `cargo test --workspace` compiles it, so that nothing is compiled twice.
+        .args(["build", "--quiet", "--workspace", "--tests", "--bin", "microphong", "--message-format", "json"])
+        .current_dir(env!("CARGO_MANIFEST_DIR"))
+        // tests/run means it for programs of boards, and this one would be compiled anew for it.
+        .env_remove("RUSTC_WORKSPACE_WRAPPER")
+        .output()
+        .expect("cargo");
+    assert!(cargo.status.success(), "{}", String::from_utf8_lossy(&cargo.stderr));
+    let messages =
+        String::from_utf8_lossy(&cargo.stdout).lines().filter_map(|line| serde_json::from_str(line).ok()).collect::<Vec<Value>>();
+    messages.into_iter().filter(|message| message["profile"]["test"] == false).collect()
+});
+
+/// The command `microphong`.
 ///
 /// # Panics
 /// When it does not compile.
 #[must_use]
 pub fn program() -> &'static Path {
-    static PROGRAM: LazyLock<PathBuf> = LazyLock::new(|| {
-        let cargo = Command::new(env!("CARGO"))
-            // As `cargo test --workspace` compiles it, so that nothing is compiled twice.
-            .args(["build", "--quiet", "--workspace", "--tests", "--bin", "microphong", "--message-format", "json"])
-            .current_dir(env!("CARGO_MANIFEST_DIR"))
-            // tests/run means it for programs of boards, and this one would be compiled anew for it.
-            .env_remove("RUSTC_WORKSPACE_WRAPPER")
-            .output()
-            .expect("cargo");
-        assert!(cargo.status.success(), "{}", String::from_utf8_lossy(&cargo.stderr));
-        String::from_utf8_lossy(&cargo.stdout)
-            .lines()
-            .filter_map(|line| serde_json::from_str::<Value>(line).ok())
-            .filter(|message| message["target"]["kind"][0] == "bin" && message["profile"]["test"] == false)
-            .find_map(|message| message["executable"].as_str().map(PathBuf::from))
-            .expect("the program's path")
-    });
-    &PROGRAM
+    let mut programs = COMPILED.iter().filter(|message| message["target"]["kind"][0] == "bin");
+    programs.find_map(|message| message["executable"].as_str()).map(Path::new).expect("the program's path")
+}
+
+/// Compiles a program of one file with these libraries of the tests, into a folder, and returns its path.
+///
+/// # Panics
+/// When it does not compile.
+#[must_use]
+pub fn compiled(source: &Path, folder: &Path, libraries: &[&str]) -> PathBuf {
+    let program = folder.join("program");
+    let mut rustc = Command::new(std::env::var_os("RUSTC").unwrap_or_else(|| "rustc".into()));
+    rustc.current_dir(env!("CARGO_MANIFEST_DIR")).args(["--edition", "2024", "-o"]).arg(&program).arg(source);
+    let is_library = |message: &&Value, name: &str| {
+        let target = &message["target"];
+        target["kind"][0] == "lib" && target["name"].as_str().is_some_and(|target| target.replace('-', "_") == name)
+    };
+    for name in libraries {
+        let mut files = COMPILED
+            .iter()
+            .filter(|message| is_library(message, name))
+            .flat_map(|message| message["filenames"].as_array().into_iter().flatten())
+            .filter_map(Value::as_str);
+        let file = files.find(|file| file.ends_with(".rlib")).unwrap_or_else(|| panic!("the tests have no library {name}"));
+        let folder = Path::new(file).parent().expect("a folder");
+        rustc.arg("--extern").arg(format!("{name}={file}")).arg("-L").arg(format!("dependency={}", folder.display()));
+    }
+    let output = rustc.output().expect("rustc");
+    assert!(output.status.success(), "{}: {}", source.display(), String::from_utf8_lossy(&output.stderr));
+    program
 }
 
 /// The method in CONTRIBUTING.md, and the light in the guide, compile as they stand there.

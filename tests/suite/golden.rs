@@ -29,7 +29,7 @@ pub(crate) fn root() -> &'static Path {
 }
 
 /// Width, height and RGB bytes; `None` without a file.
-fn read(path: &Path) -> Option<(u32, u32, Vec<u8>)> {
+pub(crate) fn read(path: &Path) -> Option<(u32, u32, Vec<u8>)> {
     let mut reader = png::Decoder::new(BufReader::new(File::open(path).ok()?)).read_info().expect("golden picture");
     let mut bytes = vec![0; reader.output_buffer_size().expect("golden picture")];
     let info = reader.next_frame(&mut bytes).expect("golden picture");

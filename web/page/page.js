@@ -91,6 +91,7 @@ const choices = () => ({
   size: [$("width"), $("height")].map((side) => Math.min(1024, Math.max(1, Math.round(Number(side.value)) || 1))),
   frame: Number($("frame").value),
   turn,
+  zoom: Number($("zoom").value),
   dither: $("dither").checked,
   antialias: $("antialias").checked,
   srgb: $("srgb").checked,
@@ -145,9 +146,8 @@ const show = ({ size: [width, height], crc, triangles, drawn, command, convert, 
   $("time").textContent = `${number(time, 1)} ms`;
   if (isPicture) {
     $("command").textContent = command;
-    $("command-note").textContent = needsStream
-      ? "Download the mesh file below. This command then draws the same picture on your computer and prints the same checksum:"
-      : "This command draws the same picture on your computer and prints the same checksum:";
+    $("command-note").textContent =
+      `${needsStream ? "Download the mesh file below. In" : "In"} a clone of the repository, this command draws the same picture and prints the same checksum:`;
     $("converting").hidden = !convert;
     $("convert").textContent = convert ?? "";
   }
@@ -158,12 +158,15 @@ const show = ({ size: [width, height], crc, triangles, drawn, command, convert, 
 // Shows each pixel of the picture as a square of whole pixels of this screen.
 const fit = () => {
   const canvas = $("canvas"), ratio = devicePixelRatio || 1;
-  const room = [$("stage").clientWidth - 56, Math.max(240, innerHeight * 0.62)];
+  const look = catalogue.panels[$("panel").value - 1]?.look ?? "lcd";
+  // A narrow page keeps the picture in sight above the controls.
+  const { paddingLeft, position } = getComputedStyle($("stage"));
+  const frame = ["oled", "reflective"].includes(look) ? 20 : 0;
+  const room = [$("stage").clientWidth - 2 * parseFloat(paddingLeft) - frame, Math.max(240, innerHeight * (position === "sticky" ? 0.4 : 0.62))];
   const factor = Math.max(1, Math.floor(Math.min(room[0] * ratio / canvas.width, room[1] * ratio / canvas.height))) / ratio;
   // A picture that is wider than the page is shown smaller, for it could not be seen otherwise.
   const shown = Math.min(factor, room[0] / canvas.width);
   [canvas.style.width, canvas.style.height] = [`${canvas.width * shown}px`, `${canvas.height * shown}px`];
-  const look = catalogue.panels[$("panel").value - 1]?.look ?? "lcd";
   $("screen").className = view() === "picture" && shown * ratio >= 2 || look === "round" ? look : "lcd";
   $("screen").style.setProperty("--factor", `${shown}px`);
   $("screen").style.setProperty("--gap", `${Math.max(1, Math.round(shown * ratio / 5)) / ratio}px`);
@@ -198,7 +201,7 @@ const report = ({ errors, ways, budget, layout, memory, features, boards }) => {
   if (errors.Ok) {
     const { largest, most, mean } = errors.Ok;
     $("errors").replaceChildren(
-      element("div", { className: "figures" }, figure(number(largest, 2), "largest"), figure(number(most, 2), "of 99 in 100 pixels, at most"),
+      element("div", { className: "figures" }, figure(number(largest, 2), "largest"), figure(number(most, 2), "at most, in 99 of 100 pixels"),
         figure(number(mean, 3), "root mean square")),
       element("p", { className: "hint", textContent: `In 1/255 of full light, before the pixel format rounds it.${budget ? ` The budget is ${budget}.` : ""}` }));
   } else {
@@ -214,7 +217,7 @@ const report = ({ errors, ways, budget, layout, memory, features, boards }) => {
       part.style.cssText = `background: rgb(${colour}); flex: ${pixels}`;
       bar.append(part);
     }
-    $("ways").replaceChildren(bar, table(["Way", "Triangles", "Pixels", "Share"],
+    $("ways").replaceChildren(bar, table(["Way of shading", "Triangles", "Pixels", "Share"],
       ways.map(({ name, colour, triangles, pixels }) => [[swatch(colour), name], number(triangles), number(pixels), `${number(100 * pixels / all, 1)} %`])));
   }
   $("boards").replaceChildren(
@@ -280,7 +283,7 @@ const open = async (wanted) => {
   $("frame").value = 0;
   $("antialias").disabled = !opened.hasSmoothOutlines;
   $("method").options[0].textContent = `as the scene says: ${opened.method}`;
-  turn = [0, 0];
+  [turn, $("zoom").value] = [[0, 0], 1];
   if (!$("panel").value) resize(opened.size);
   $("screen").setAttribute("aria-label", `Picture of ${opened.name}, ${opened.triangles} triangles`);
   update();
@@ -302,7 +305,7 @@ const update = () => {
   $("material").hidden = !$("surface").value;
   $("light").hidden = !$("lights").value;
   $("background-label").hidden = !$("has-background").checked;
-  for (const output of document.querySelectorAll("output")) output.textContent = $(output.htmlFor.value).value;
+  for (const output of document.querySelectorAll("output")) output.textContent = Math.round(100 * $(output.htmlFor.value).value) / 100;
   $("legend").hidden = view() === "picture";
   $("legend").replaceChildren(...(view() === "ways"
     ? catalogue.ways.map(({ name, colour }) => element("span", {}, swatch(colour), name))
@@ -364,6 +367,16 @@ const turnBy = (right, towards) => {
   redraw();
 };
 
+const zoomTo = (zoom) => {
+  $("zoom").value = zoom;
+  update();
+};
+
+const resetView = () => {
+  turn = [0, 0];
+  zoomTo(1);
+};
+
 const listen = () => {
   $("controls").addEventListener("submit", (event) => event.preventDefault());
   $("controls").addEventListener("input", ({ target }) => {
@@ -402,30 +415,45 @@ const listen = () => {
       redraw();
     }
   });
-  $("turn-back").addEventListener("click", () => {
-    turn = [0, 0];
-    redraw();
-  });
+  $("turn-back").addEventListener("click", resetView);
 
   const screen = $("screen");
-  const keys = { ArrowLeft: [-5, 0], ArrowRight: [5, 0], ArrowUp: [0, -5], ArrowDown: [0, 5] };
+  const zoomBy = (factor) => zoomTo(Number($("zoom").value) * factor);
+  const keys = {
+    ArrowLeft: () => turnBy(-5, 0), ArrowRight: () => turnBy(5, 0), ArrowUp: () => turnBy(0, -5), ArrowDown: () => turnBy(0, 5),
+    "+": () => zoomBy(1.25), "-": () => zoomBy(0.8), Home: resetView,
+  };
   screen.addEventListener("keydown", (event) => {
-    if (event.key === "Home") turn = [0, 0];
-    else if (!keys[event.key]) return;
+    if (!keys[event.key] || event.ctrlKey || event.metaKey) return;
     event.preventDefault();
-    turnBy(...(keys[event.key] ?? [0, 0]));
+    keys[event.key]();
   });
-  let last;
-  screen.addEventListener("pointerdown", ({ pointerId, clientX, clientY }) => {
+  // The pointers that are down, by their numbers. One turns, and two zoom as they part.
+  const down = new Map();
+  const span = () => {
+    const [[x, y], [otherX, otherY]] = down.values();
+    return Math.max(1, Math.hypot(x - otherX, y - otherY));
+  };
+  screen.addEventListener("pointerdown", ({ pointerId, button, clientX, clientY }) => {
+    if (button) return;
     screen.setPointerCapture(pointerId);
     screen.focus({ focusVisible: false });
-    last = [clientX, clientY];
+    down.set(pointerId, [clientX, clientY]);
   });
-  screen.addEventListener("pointermove", ({ buttons, clientX, clientY }) => {
-    if (!(buttons & 1) || !last) return;
-    turnBy(0.6 * (clientX - last[0]), 0.6 * (clientY - last[1]));
-    last = [clientX, clientY];
+  screen.addEventListener("pointermove", ({ pointerId, clientX, clientY }) => {
+    if (!down.has(pointerId)) return;
+    const [x, y] = down.get(pointerId), before = down.size === 2 && span();
+    down.set(pointerId, [clientX, clientY]);
+    if (before) zoomBy(span() / before);
+    else if (down.size === 1) turnBy(0.6 * (clientX - x), 0.6 * (clientY - y));
   });
+  for (const end of ["pointerup", "pointercancel"]) screen.addEventListener(end, ({ pointerId }) => down.delete(pointerId));
+  // Browsers report a pinch on a touch pad as a wheel with the control key.
+  screen.addEventListener("wheel", (event) => {
+    if (!event.ctrlKey) return;
+    event.preventDefault();
+    zoomBy(Math.exp(-0.01 * event.deltaY));
+  }, { passive: false });
 
   addEventListener("dragover", (event) => {
     event.preventDefault();
@@ -442,13 +470,14 @@ const listen = () => {
   addEventListener("resize", () => opened && fit());
 };
 
-const options = (id, entries) => $(id).replaceChildren(...entries.map(([value, text]) => element("option", { value, textContent: text })));
+const options = (id, entries) =>
+  $(id).replaceChildren(...entries.map(([value, textContent, disabled = false]) => element("option", { value, textContent, disabled })));
 
 const begin = async () => {
   module = await compiled();
   artist = new Desk(module);
   [catalogue] = await artist.ask({ ask: "catalogue" });
-  options("scene", [["", "files of your own"], ...catalogue.scenes.map(({ name, title }) => [name, `${name}: ${title}`])]);
+  options("scene", [["", "files of your own", true], ...catalogue.scenes.map(({ name, title }) => [name, `${name}: ${title}`])]);
   options("method", [["", "as the scene says"], ...catalogue.methods.map(({ name, title }) => [name, title])]);
   options("budget", [["", "as the pixel format decides"], ...catalogue.budgets.map((budget) => [budget, `${budget} of 255`])]);
   options("panel", [["", "the size of the scene"], ...catalogue.panels.map(({ name, size }, index) => [index + 1, `${name}, ${size.join(" × ")}`])]);
@@ -456,6 +485,9 @@ const begin = async () => {
   options("up", catalogue.ups.map((name) => [name, name]));
   $("up").value = "y";
   $("scene").value = source.scene;
+  // The first picture is that of a common display.
+  $("panel").value = 1;
+  resize(catalogue.panels[0].size);
   $("colour").value = `#${catalogue.material.colour}`;
   for (const name of ["diffuse", "specular", "ambient", "exponent"]) $(name).value = catalogue.material[name];
   listen();

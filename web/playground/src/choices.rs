@@ -58,6 +58,8 @@ pub(crate) struct Choices {
     pub(crate) frame: u32,
     /// Degrees by which the mesh is turned: to the right about the axis of its orbit, and then towards the viewer.
     pub(crate) turn: [f64; 2],
+    /// How many times as large as in the scene the mesh is shown.
+    pub(crate) zoom: f64,
     /// Dither, in a format that has it.
     pub(crate) dither: bool,
     /// Smooth outlines.

@@ -4,7 +4,11 @@
 
 use crate::choices::{self, Choices, LightKind, Lights};
 use anyhow::Result;
-use microphong::{Stream, stream::record::Camera};
+use microphong::{
+    Stream,
+    format::Focal,
+    stream::{MAX_FOCAL, MIN_FOCAL, record::Camera},
+};
 use microphong_models::{
     bytes::StreamBytes,
     look::{Lamp, LampKind},
@@ -14,7 +18,12 @@ use microphong_models::{
 
 /// Whether a user has changed the scene itself, and not only the way in which it is drawn.
 pub(crate) fn is_changed(choices: &Choices) -> bool {
-    choices.material.is_some() || choices.lights.is_some() || choices.background.is_some() || choices.turn != [0.0; 2]
+    choices.material.is_some() || choices.lights.is_some() || choices.background.is_some() || is_viewed_otherwise(choices)
+}
+
+/// Whether a user looks at the mesh from another side or distance than the scene does.
+fn is_viewed_otherwise(choices: &Choices) -> bool {
+    choices.turn != [0.0; 2] || choices.zoom != 1.0
 }
 
 /// The stream with all that is chosen but the view.
@@ -40,8 +49,20 @@ pub(crate) fn painted(stream: StreamBytes, choices: &Choices) -> Result<StreamBy
 }
 
 /// The stream in the chosen view.
-pub(crate) fn turned(stream: StreamBytes, choices: &Choices) -> StreamBytes {
-    if choices.turn == [0.0; 2] { stream } else { stream.with_camera(|camera| turn(camera, choices.turn)) }
+pub(crate) fn viewed(stream: StreamBytes, choices: &Choices) -> StreamBytes {
+    if !is_viewed_otherwise(choices) {
+        return stream;
+    }
+    stream.with_camera(|camera| {
+        turn(camera, choices.turn);
+        *camera = camera.with_focal(zoomed(camera.focal(), choices.zoom));
+    })
+}
+
+/// A focal length times the zoom, as far as cameras have it.
+fn zoomed(focal: Focal, zoom: f64) -> Focal {
+    let [shortest, longest] = [MIN_FOCAL, MAX_FOCAL].map(|bits| f64::from(Focal::from_bits(bits)));
+    Focal::saturating_from_num((f64::from(focal) * zoom).clamp(shortest, longest))
 }
 
 /// Turns the mesh by degrees to the right about the axis of the orbit, and then towards the viewer.

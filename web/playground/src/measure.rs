@@ -11,7 +11,7 @@ use microphong::Stream;
 use microphong_compare::{Reference, figures::Spread};
 use microphong_render::{
     choices::{self, Way},
-    program::{layout_text, needs},
+    program::layout_text,
     render::{Picture, Settings, Style},
 };
 use serde::Serialize;
@@ -76,7 +76,7 @@ pub(crate) fn measured(stream: &Stream<'_>, settings: &Settings, number: u32) ->
         budget: told.map(|told| told.budget),
         layout: layout_text(&layout),
         memory: settings.format.bytes(&layout),
-        features: needs(stream, settings.format).into_iter().map(|feature| feature.name()).collect(),
+        features: program::features(stream, settings),
         boards: boards::estimated(stream, settings, counts.as_ref())?,
     })
 }

@@ -1,7 +1,7 @@
 //! The Rust program that draws a scene: the example of the README, with another layout, size, method and pixel format.
 
 use anyhow::{Result, bail};
-use microphong::{Layout, Stream};
+use microphong::{Layout, Stream, features::Feature};
 use microphong_render::{
     program::layout_text,
     render::{self, Format, Settings},
@@ -16,8 +16,8 @@ pub(crate) fn layout(stream: &Stream<'_>, settings: &Settings) -> Result<Layout>
     render::program_layout(stream, settings.style.shader, settings.size, settings.band_rows)
 }
 
-/// The program for a stream of this name, which lies in the folder of the package.
-pub(crate) fn text(stream: &Stream<'_>, settings: &Settings, name: &str) -> Result<String> {
+/// The program that draws frame `number` of a stream of this name, which lies in the folder of the package.
+pub(crate) fn text(stream: &Stream<'_>, settings: &Settings, number: u32, name: &str) -> Result<String> {
     let Settings { size, style, band_rows, format } = *settings;
     let (drawn, shown) = types(format)?;
     let layout = layout_text(&layout(stream, settings)?);
@@ -27,6 +27,7 @@ pub(crate) fn text(stream: &Stream<'_>, settings: &Settings, name: &str) -> Resu
     program.replace("240 pixels wide and drawn 40 rows", &format!("{} pixels wide and drawn {band_rows} rows", size.width))?;
     program.replace("Size::new(240, 240)", &format!("Size::new({}, {})", size.width, size.height))?;
     program.replace("Shader::AUTO", constant(style.shader))?;
+    program.replace("&mut band, 0)", &format!("&mut band, {number})"))?;
     program.replace("[Rgb565::BLACK;", &format!("[<{drawn}>::default();"))?;
     program.replace("words::<Rgb565>", &format!("words::<{drawn}>"))?;
     program.replace("SimulatorDisplay::<Rgb565>", &format!("SimulatorDisplay::<{shown}>"))?;
@@ -47,13 +48,21 @@ pub(crate) fn text(stream: &Stream<'_>, settings: &Settings, name: &str) -> Resu
         calls += "    renderer.set_antialias(true)?;\n";
     }
     program.replace("    let stats = Picture", &format!("{calls}    let stats = Picture"))?;
-    let features = if style.antialias { " --features antialias" } else { "" };
+    let features = features(stream, settings);
+    let options = if features.is_empty() { String::new() } else { format!(" --features {}", features.join(",")) };
     let head = format!(
-        "//! To run it, make a package, and put {name} into its folder:\n//!\n//!     cargo add microphong --path ../microphong/shared{features}\n\
+        "//! To run it, make a package, and put {name} into its folder:\n//!\n//!     cargo add microphong --path ../microphong/shared{options}\n\
          //!     cargo add embedded-graphics@0.8.2\n//!     cargo add embedded-graphics-simulator@0.8 --no-default-features\nuse embedded_graphics::"
     );
     program.replace("use embedded_graphics::", &format!("//!\n{head}"))?;
     Ok(program.0)
+}
+
+/// The cargo features that a program needs for this picture, by their names.
+pub(crate) fn features(stream: &Stream<'_>, settings: &Settings) -> Vec<&'static str> {
+    let channels = settings.format.channels();
+    let is_smooth = |feature: Feature| feature == Feature::Antialias && settings.style.antialias;
+    Feature::ALL.into_iter().filter(|feature| feature.is_needed_by(stream, &channels) || is_smooth(*feature)).map(Feature::name).collect()
 }
 
 /// A program that is being written.
@@ -114,9 +123,10 @@ mod tests {
             for shader in Shader::CORE {
                 let mut settings = Settings::usual(shader, Size::new(128, 64), format);
                 settings.style.antialias = true;
-                let text = text(&smooth.view().unwrap(), &settings, "torus.tri").unwrap();
+                let text = text(&smooth.view().unwrap(), &settings, 7, "torus.tri").unwrap();
                 assert!(text.contains(constant(shader)) && text.contains("Layout::new(128, 16).vertices("), "{text}");
-                assert!(text.contains("set_antialias(true)") && !text.contains("240"), "{text}");
+                assert!(text.contains("set_antialias(true)") && text.contains("&mut band, 7)") && !text.contains("240"), "{text}");
+                assert!(text.contains("shared --features ") && text.contains("antialias\n"), "{text}");
             }
         }
     }

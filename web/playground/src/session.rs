@@ -224,7 +224,7 @@ impl Open {
 
     /// The stream to draw: with neighbours if outlines are smooth.
     fn stream(&self, choices: &Choices) -> Result<StreamBytes> {
-        let key = Choices { turn: [0.0; 2], frame: 0, ..choices.clone() };
+        let key = Choices { turn: [0.0; 2], zoom: 1.0, frame: 0, ..choices.clone() };
         let mut painted = self.painted.borrow_mut();
         let known = painted.take().filter(|(known, _)| *known == key);
         let (_, stream) = match known {
@@ -235,7 +235,7 @@ impl Open {
                 painted.insert((key, stream))
             }
         };
-        Ok(edit::turned(stream.clone(), choices))
+        Ok(edit::viewed(stream.clone(), choices))
     }
 
     /// The stream to measure. It states the budget of the pixel format, because errors and choices are those of light that has no format.
@@ -290,7 +290,7 @@ impl Open {
             File::Stream => packed(&Taken { name }, bytes.as_bytes()),
             File::Program => {
                 let stream = bytes.view()?;
-                let text = program::text(&stream, &self.settings(choices, &stream)?, &name)?;
+                let text = program::text(&stream, &self.settings(choices, &stream)?, choices.frame, &name)?;
                 packed(&Taken { name: "main.rs".to_owned() }, text.as_bytes())
             }
         }
