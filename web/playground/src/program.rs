@@ -126,7 +126,7 @@ mod tests {
                 let text = text(&smooth.view().unwrap(), &settings, 7, "torus.tri").unwrap();
                 assert!(text.contains(constant(shader)) && text.contains("Layout::new(128, 16).vertices("), "{text}");
                 assert!(text.contains("set_antialias(true)") && text.contains("&mut band, 7)") && !text.contains("240"), "{text}");
-                assert!(text.contains("shared --features ") && text.contains("antialias\n"), "{text}");
+                assert!(text.contains("microphong --path ../microphong/shared --features antialias"), "{text}");
             }
         }
     }
