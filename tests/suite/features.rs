@@ -18,7 +18,7 @@ use tempfile::TempDir;
 const SETS: [&str; 6] = [
     "",
     "colours",
-    "antialias,light-shapes,near-lights",
+    "antialias,colours,light-shapes,near-lights",
     "animation,colours,lights,objects",
     "colours,vertex-colours",
     "colours,textures,vertex-colours",
