@@ -93,6 +93,8 @@ pub(crate) const LIGHT_SHAPES: bool = Feature::LightShapes.is_on();
 pub(crate) const NEAR_LIGHTS: bool = Feature::NearLights.is_on();
 /// Loops that add lights to a sum: several lights, or near lights of any kind.
 pub(crate) const SUMS_LIGHTS: bool = LIGHTS || NEAR_LIGHTS;
+/// Loops that do so where all lights are constant: several of them, or one from the sky.
+pub(crate) const SUMS_CONSTANT_LIGHTS: bool = LIGHTS || LIGHT_SHAPES;
 pub(crate) const OBJECTS: bool = Feature::Objects.is_on();
 /// Whether the corners of triangles may have colours.
 pub(crate) const VERTEX_COLOURS: bool = Feature::VertexColours.is_on();

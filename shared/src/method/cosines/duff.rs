@@ -10,7 +10,7 @@
 
 use crate::{
     arch::product::upper,
-    features::LIGHTS,
+    features::SUMS_CONSTANT_LIGHTS,
     interpolate::field::Field,
     lighting::{
         lights::Source,
@@ -112,7 +112,7 @@ pub(crate) fn draw<C: Pixel>(
         return None;
     }
     let lengths = Lengths::of(setup, is_steep)?;
-    if LIGHTS && reflectance.lights() > 1 {
+    if SUMS_CONSTANT_LIGHTS && reflectance.lights() > 1 {
         // In greys the light of two is summed as well.
         return if C::GRAY || reflectance.sums_lights() {
             summed::draw::<C, false>(setup, shading, &lengths, tables, band)
