@@ -163,6 +163,8 @@ fn a_person_can_open_turn_choose_and_take_away() {
     let native = succeeds(place.path(), &["render", "my pot.tri", "--size", "320x240", "--format", "rgb565", "--json"]);
     let native: Value = serde_json::from_str(&native).expect("JSON");
     assert_eq!(native["crc"], dragged, "the file shows what was turned");
+    // Keys go to the picture once it is clicked.
+    browser.click("#screen");
     for key in ['\u{e014}', '+'] {
         let crc = browser.text("crc");
         browser.press(key);
