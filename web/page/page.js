@@ -137,7 +137,8 @@ const draw = async () => {
 const show = ({ size: [width, height], crc, triangles, drawn, command, convert, needsStream }, rgba, time) => {
   const canvas = $("canvas");
   if (canvas.width !== width || canvas.height !== height) [canvas.width, canvas.height] = [width, height];
-  canvas.getContext("2d").putImageData(new ImageData(new Uint8ClampedArray(rgba.buffer, rgba.byteOffset, rgba.length), width, height), 0, 0);
+  // The processor writes each picture, and reads it again to save it, so the picture stays in its memory.
+  canvas.getContext("2d", { willReadFrequently: true }).putImageData(new ImageData(new Uint8ClampedArray(rgba.buffer, rgba.byteOffset, rgba.length), width, height), 0, 0);
   fit();
   const isPicture = view() === "picture";
   $("size").textContent = `${width} × ${height}`;
