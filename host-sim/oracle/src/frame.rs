@@ -321,10 +321,9 @@ impl Facet {
         parts.map(|part| part / whole)
     }
 
-    /// Whether a quadratic on the screen has its nodes there: without perspective, or if normals bend so little that none is shorter than 1/2, and there
-    /// is no texture.
+    /// Whether a quadratic on the screen has its nodes there: without perspective, or if normals bend so little that none is shorter than 1/2.
     pub(super) fn has_screen_nodes(&self) -> bool {
-        self.shares == [1.0; 3] || self.min_normal_length >= 0.5 && !self.is_painted
+        self.shares == [1.0; 3] || self.min_normal_length >= 0.5
     }
 
     /// Affine coordinates of a point on the screen.

@@ -351,10 +351,10 @@ impl TriangleSetup<'_> {
     }
 
     /// Whether a quadratic on the screen can have its nodes there: perspective is off, or no interpolated normal is so short that the rounding of a
-    /// place on an edge would turn it. Light of a triangle with a texture is interpolated in space.
+    /// place on an edge would turn it.
     #[inline(always)]
     pub(crate) fn has_screen_nodes(&self) -> bool {
-        !PERSPECTIVE || self.inv_depth().is_none() || !self.is_curved() && !self.has_texture()
+        !PERSPECTIVE || self.inv_depth().is_none() || !self.is_curved()
     }
 
     /// [`Self::middles`] on the screen, Q2.30.

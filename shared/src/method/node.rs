@@ -63,13 +63,20 @@ impl Shading<'_> {
         self.reflectance.parts(self.lighting.incident(node.position, node.normal, None))
     }
 
-    /// The parts of light at the middles of the edges 0-1, 1-2 and 2-0 in space.
+    /// The parts of light at the [`Middles`] of the edges 0-1, 1-2 and 2-0.
     #[inline(never)]
     pub(crate) fn middle_parts(&self, setup: &TriangleSetup<'_>) -> [Parts; 3] {
-        if self.lighting.is_constant()
-            && !is_steep(self.exponent)
-            && let Some(normals) = &setup.middle_normals()
-        {
+        let is_fast = self.lighting.is_constant() && !is_steep(self.exponent);
+        if let Middles(Some(shares)) = setup.middles() {
+            if is_fast {
+                let parts = |vector, half_reciprocal| {
+                    self.reflectance.constant_parts(self.lighting.sources(), &InterpolatedNormal { vector, half_reciprocal })
+                };
+                return zip(seen_normals(setup.vertices(), shares), setup.half_reciprocals(shares), parts);
+            }
+            return map(seen_nodes(setup), |node| self.parts(&node));
+        }
+        if is_fast && let Some(normals) = &setup.middle_normals() {
             return map(normals.each_ref(), |normal| self.reflectance.constant_parts(self.lighting.sources(), normal));
         }
         let [.., ab, bc, ca] = setup.six_nodes(self.exponent);

@@ -9,8 +9,9 @@
 //! has loops for colours that change from pixel to pixel. All else goes through the general loop.
 
 use crate::{
+    arch::product::by_fraction,
     features::{PERSPECTIVE, TEXTURES, TRANSPARENCY},
-    format::{BIAS, CHANNEL, FULL, INTENSITY, Intensity, LEVEL, TEXTURE, WALK},
+    format::{BIAS, CHANNEL, FULL, INTENSITY, Intensity, LEVEL, RAMP, TEXTURE, WALK},
     interpolate::{
         Patch, Walker,
         by_column::ByColumn,
@@ -21,11 +22,12 @@ use crate::{
     },
     lighting::{
         albedo::{Albedo, Parts, SHARE},
+        material_tables::MaterialTables,
         sampler::{FINER, IfTextured, Sampler, Textured},
     },
     math::vector::{map, zip},
     method::{
-        EXTRA, IntensityShader, LinearWay, Middles, RANGE, Shading, TriangleSetup, bias, channels, largest,
+        EXTRA, IntensityShader, LinearWay, Middles, RANGE, Shading, TriangleSetup, bias, channels,
         node::mixed,
         perspective,
         products::{LinearNodes, QuadraticNodes, fitted, linear, quadratic},
@@ -40,7 +42,7 @@ use crate::{
     raster::{
         band::Band,
         canvas::{Canvas, Shaded},
-        pixel_shader::PixelShader,
+        pixel_shader::{PixelShader, Ramp},
     },
     stream::record::Colour,
 };
@@ -212,67 +214,174 @@ impl IntensityShader<(([u32; 3], [u32; 3]), Colour)> for OnTexture<'_, Apart> {
     }
 }
 
-/// Draws a triangle with a texture by a loop of its pixel format: interpolated `parts` of light, and a place by a plane or a quadratic. `None` if the general
-/// loop has to draw it: in greys, under more than full intensity, and where a plane on the screen is too far off for the light, or a quadratic for the
-/// place.
+/// Draws a triangle with a texture by a loop of its pixel format: `parts` of light at its nodes, which are interpolated, and a place by a plane or a
+/// quadratic. Three nodes are the corners. Six nodes are those of a quadratic on the screen. `None` if the general loop has to draw it: under very bright
+/// light, and where a quadratic on the screen is too far off for the place, or for light between the corners.
 #[inline(never)]
-pub(crate) fn fill<C: Pixel>(setup: &TriangleSetup<'_>, shading: &Shading<'_>, parts: &[Parts; 3], band: &mut Band<'_, C>) -> Option<u32> {
-    let texture = setup.texture.first()?.as_ref()?;
-    if C::GRAY {
-        return None;
-    }
-    let quarter = shading.reflectance.quarter();
-    let [light, highlights] = [|parts: &Parts| parts.diffuse, |parts: &Parts| parts.specular].map(|levels| map(parts.each_ref(), levels));
-    // Light without a hue is one level at a pixel.
-    if shading.reflectance.is_neutral() && NeutralTexels::<C>::EXISTS {
-        let green = |[_, green, _]: [i32; 3]| green;
-        return draw(setup, texture, [map(light, green)], [map(highlights, green)], NeutralTexels::<C>::new(quarter), band);
-    }
-    draw(setup, texture, channels(light), channels(highlights), Texels::<C>::new(quarter), band)
-}
-
-/// [`fill`] by the levels of each channel at the corners.
-#[inline(never)]
-fn draw<C: Pixel, S, const CH: usize>(
+pub(crate) fn fill<C: Pixel, const N: usize>(
     setup: &TriangleSetup<'_>,
-    texture: &Textured<'_>,
-    light: [[i32; 3]; CH],
-    highlights: [[i32; 3]; CH],
-    pixels: S,
+    shading: &Shading<'_>,
+    parts: &[Parts; N],
+    tables: MaterialTables<'_, C>,
     band: &mut Band<'_, C>,
 ) -> Option<u32>
 where
-    S: PixelShader<(Colour, [u32; CH]), Pixel = C> + PixelShader<(Colour, ([u32; CH], [u32; CH])), Pixel = C>,
+    Light<N, 1>: Drawn<1>,
+    Light<N, 3>: Drawn<3>,
 {
-    let light = light.map(|levels| map(levels, |level| scaled(quarter_of(level))));
-    let spread = |levels: &[[i32; 3]; CH]| levels.iter().fold(0, |most, &[a, b, c]| most.max((a.max(b).max(c) - a.min(b).min(c)) as u32));
-    let range = || spread(&light).saturating_mul(1 << QUARTER).max(spread(&highlights));
-    let brightest = |levels: &[[i32; 3]; CH]| levels.iter().fold(0, |most, levels| most.max(largest(levels)));
-    let (brightest, highlight) = (brightest(&light), brightest(&highlights));
-    let is_matt = highlight == 0;
-    // The sum at a pixel has to be less than 512 of 255.
-    let most = if is_matt { 510 } else { 257 } << LEVEL >> QUARTER;
-    if brightest >= most || highlight > FULL || !matches!(setup.linear_way(range), LinearWay::Plane) {
-        return None;
+    let texture = setup.texture.first()?.as_ref()?;
+    let nodes = |levels: fn(&Parts) -> [i32; 3]| parts.each_ref().map(levels);
+    let (diffuse, specular) = (nodes(|parts| parts.diffuse), nodes(|parts| parts.specular));
+    // Light without a hue is one level at a pixel.
+    let one = || {
+        let green = |[_, green, _]: [i32; 3]| green;
+        Light::new([diffuse.map(green)], [specular.map(green)])
+    };
+    if C::GRAY {
+        return if GrayTexels::<C>::EXISTS { one().draw(setup, texture, GrayTexels(Ramp(tables.ramps)), band) } else { None };
     }
-    let fit = |levels| Nodes::<3, CH, RANGE>::new(levels, CHANNEL - LEVEL).fit(setup.gradients);
-    let sampler = texture.sampler;
-    let way = setup.way_of_places(texture);
-    Some(if matches!(way, LinearWay::Plane) {
-        let place = || Placed::<_, true> { place: setup.place_by_plane(texture), sampler };
-        if is_matt {
-            setup.fill(|| (place(), fit(light)), pixels, band)
-        } else {
-            setup.fill(|| (place(), (fit(light), fit(highlights))), pixels, band)
+    let quarter = shading.reflectance.quarter();
+    if shading.reflectance.is_neutral() && NeutralTexels::<C>::EXISTS {
+        return one().draw(setup, texture, NeutralTexels::<C>::new(quarter), band);
+    }
+    Light::new(channels(diffuse), channels(specular)).draw(setup, texture, Texels::<C>::new(quarter), band)
+}
+
+/// The light of a triangle at `N` nodes, in `CH` channels: what texels reflect of it, and what is added to that.
+#[derive(Clone, Copy)]
+pub(crate) struct Light<const N: usize, const CH: usize> {
+    /// Quarters of ambient and diffuse light, [`scaled`].
+    diffuse: [[i32; N]; CH],
+    specular: [[i32; N]; CH],
+}
+
+impl<const N: usize, const CH: usize> Light<N, CH> {
+    fn new(diffuse: [[i32; N]; CH], specular: [[i32; N]; CH]) -> Self {
+        Self { diffuse: diffuse.map(|levels| levels.map(|level| scaled(quarter_of(level)))), specular }
+    }
+
+    fn brightest(levels: &[[i32; N]; CH]) -> i32 {
+        levels.as_flattened().iter().fold(0, |most, &level| most.max(level))
+    }
+
+    /// Whether no highlight reaches the triangle.
+    fn is_matt(&self) -> bool {
+        Self::brightest(&self.specular) == 0
+    }
+
+    /// Whether the sum at a pixel is less than `most` of 255 for sure. A quadratic exceeds the interval of its nodes, which begins at 0 here, by at most a
+    /// third at each end: the absolute values of the weights of six nodes sum to at most 5/3.
+    fn is_less_than(&self, most: i32) -> bool {
+        let sum = (Self::brightest(&self.diffuse) << QUARTER) + Self::brightest(&self.specular);
+        let brightest = if N == 3 { sum } else { sum + sum / 3 };
+        brightest < most << LEVEL
+    }
+}
+
+impl<const CH: usize> Light<3, CH> {
+    /// The largest difference between corners, in levels.
+    fn range(&self) -> u32 {
+        let spread =
+            |levels: &[[i32; 3]; CH]| levels.iter().fold(0, |most, &[a, b, c]| most.max((a.max(b).max(c) - a.min(b).min(c)) as u32));
+        (spread(&self.diffuse) << QUARTER).max(spread(&self.specular))
+    }
+
+    /// The light at the corners and at these shares of the edges.
+    fn six(&self, [ab, bc, ca]: [u16; 3]) -> Light<6, CH> {
+        let six = |[a, b, c]: [i32; 3]| [a, b, c, mixed(a, b, ab), mixed(b, c, bc), mixed(c, a, ca)];
+        Light { diffuse: self.diffuse.map(six), specular: self.specular.map(six) }
+    }
+}
+
+/// Makes pixels of texels and light in `CH` channels, without highlights and with them.
+pub(crate) trait Pixels<C, const CH: usize>:
+    PixelShader<(Colour, [u32; CH]), Pixel = C> + PixelShader<(Colour, ([u32; CH], [u32; CH])), Pixel = C>
+{
+    /// The sum of light at a pixel, of 255, has to be less than this.
+    const MOST: i32 = 511;
+}
+
+impl<C: Pixel> Pixels<C, 3> for Texels<C> {}
+
+impl<C: Pixel> Pixels<C, 1> for NeutralTexels<C> {}
+
+impl<C: Pixel> Pixels<C, 1> for GrayTexels<'_, C> {
+    /// Where the table of colours ends.
+    const MOST: i32 = RAMP as i32 - BIAS - 1;
+}
+
+/// Light by which a triangle with a texture is drawn.
+pub(crate) trait Drawn<const CH: usize> {
+    /// Draws the triangle. `None` if the general loop has to draw it.
+    fn draw<C: Pixel, P: Pixels<C, CH>>(
+        &self,
+        setup: &TriangleSetup<'_>,
+        texture: &Textured<'_>,
+        pixels: P,
+        band: &mut Band<'_, C>,
+    ) -> Option<u32>;
+}
+
+impl<const CH: usize> Drawn<CH> for Light<3, CH> {
+    #[inline(never)]
+    fn draw<C: Pixel, P: Pixels<C, CH>>(
+        &self,
+        setup: &TriangleSetup<'_>,
+        texture: &Textured<'_>,
+        pixels: P,
+        band: &mut Band<'_, C>,
+    ) -> Option<u32> {
+        match setup.linear_way(|| self.range()) {
+            LinearWay::Plane => {}
+            LinearWay::Quadratic(shares) => return self.six(shares).draw(setup, texture, pixels, band),
+            LinearWay::InSpace => return None,
         }
-    } else {
-        let place = Placed::<_, false> { place: ByColumn(by_quadratic(setup, texture, way)?), sampler };
-        if is_matt {
-            setup.fill(|| (place, fit(light)), pixels, band)
-        } else {
-            setup.fill(|| (place, (fit(light), fit(highlights))), pixels, band)
+        if !self.is_less_than(P::MOST) {
+            return None;
         }
-    })
+        let fit = |levels| Nodes::<3, CH, RANGE>::new(levels, CHANNEL - LEVEL).fit(setup.gradients);
+        let (light, highlights) = (|| fit(self.diffuse), || fit(self.specular));
+        let sampler = texture.sampler;
+        let way = setup.way_of_places(texture);
+        Some(if matches!(way, LinearWay::Plane) {
+            let place = || Placed::<_, true> { place: setup.place_by_plane(texture), sampler };
+            if self.is_matt() {
+                setup.fill(|| (place(), light()), pixels, band)
+            } else {
+                setup.fill(|| (place(), (light(), highlights())), pixels, band)
+            }
+        } else {
+            let place = Placed::<_, false> { place: ByColumn(by_quadratic(setup, texture, way)?), sampler };
+            if self.is_matt() {
+                setup.fill(|| (place, light()), pixels, band)
+            } else {
+                setup.fill(|| (place, (light(), highlights())), pixels, band)
+            }
+        })
+    }
+}
+
+impl<const CH: usize> Drawn<CH> for Light<6, CH> {
+    #[inline(never)]
+    fn draw<C: Pixel, P: Pixels<C, CH>>(
+        &self,
+        setup: &TriangleSetup<'_>,
+        texture: &Textured<'_>,
+        pixels: P,
+        band: &mut Band<'_, C>,
+    ) -> Option<u32> {
+        if !self.is_less_than(P::MOST) {
+            return None;
+        }
+        let place =
+            Placed::<_, false> { place: ByColumn(by_quadratic(setup, texture, setup.way_of_places(texture))?), sampler: texture.sampler };
+        let fit = |levels| ByColumn(Nodes::<6, CH, RANGE>::new(levels, CHANNEL - LEVEL).fit(setup.gradients));
+        Some(if self.is_matt() {
+            setup.fill(|| (place, fit(self.diffuse)), pixels, band)
+        } else {
+            setup.fill(|| (place, (fit(self.diffuse), fit(self.specular))), pixels, band)
+        })
+    }
 }
 
 /// The place on the screen as a quadratic, also where it is a plane; `None` where only the point in space will do.
@@ -308,8 +417,8 @@ impl<C: Pixel> Texels<C> {
     /// The levels that [`scaled`] quarters of light leave on a texel.
     #[inline(always)]
     fn reflected([r, g, b]: [u32; 3], Colour { channels: [red, green, blue], .. }: Colour) -> [i32; 3] {
-        // Q8.16 times eight bits, of which a quarter is a whole level with CHANNEL fraction bits. It is less than 512.
-        let reflect = |quarter: u32, channel: u8| (quarter >> (CHANNEL - 16)).wrapping_mul(channel.into()) as i32;
+        // Q8.16 times eight bits, of which a quarter is a whole level with CHANNEL fraction bits. It is between -512 and 512.
+        let reflect = |quarter: u32, channel: u8| (quarter as i32 >> (CHANNEL - 16)).wrapping_mul(channel.into());
         [reflect(r, red), reflect(g, green), reflect(b, blue)]
     }
 
@@ -361,7 +470,7 @@ impl<C: Pixel> NeutralTexels<C> {
 
     /// A level of red and blue by that of green. They are as 248 to 252 if green has 6 bits and they have 5: this is off by 2^-12.
     #[inline(always)]
-    fn outer(level: u32) -> u32 {
+    fn outer(level: i32) -> i32 {
         let [red, green, _] = C::LEVELS;
         if red == green { level } else { level.wrapping_sub(level >> 6) }
     }
@@ -370,10 +479,10 @@ impl<C: Pixel> NeutralTexels<C> {
     #[inline(always)]
     fn colour(&self, quarter: u32, highlight: u32, Colour { channels: [red, green, blue], .. }: Colour) -> C {
         let (more, more_green) = self.rounding.now();
-        let quarter = quarter >> (CHANNEL - 16);
-        let level = |channel: u8, quarter: u32, more: i32| (quarter.wrapping_mul(channel.into()) as i32).wrapping_add(more);
-        let (outer, more) = (Self::outer(quarter), more.wrapping_add(Self::outer(highlight) as i32));
-        C::mixed([level(red, outer, more), level(green, quarter, more_green.wrapping_add(highlight as i32)), level(blue, outer, more)])
+        let (quarter, highlight) = (quarter as i32 >> (CHANNEL - 16), highlight as i32);
+        let level = |channel: u8, quarter: i32, more: i32| quarter.wrapping_mul(channel.into()).wrapping_add(more);
+        let (outer, more) = (Self::outer(quarter), more.wrapping_add(Self::outer(highlight)));
+        C::mixed([level(red, outer, more), level(green, quarter, more_green.wrapping_add(highlight)), level(blue, outer, more)])
     }
 }
 
@@ -399,6 +508,45 @@ impl<C: Pixel> PixelShader<(Colour, ([u32; 1], [u32; 1]))> for NeutralTexels<C> 
     #[inline(always)]
     fn shade(&self, (texel, ([light], [highlight])): (Colour, ([u32; 1], [u32; 1]))) -> C {
         self.colour(light, highlight, texel)
+    }
+}
+
+/// [`Texels`] in greys.
+#[derive(Clone, Copy)]
+struct GrayTexels<'f, C: Pixel>(Ramp<'f, C>);
+
+impl<C: Pixel> GrayTexels<'_, C> {
+    /// Whether tables of colours serve all pixels of a row alike.
+    const EXISTS: bool = !C::Ramps::CHECKERED;
+
+    /// The grey where a texel reflects this much light, as [`scaled`] quarters, and where these levels of highlights are added.
+    #[inline(always)]
+    fn gray(&self, quarter: u32, highlight: u32, Colour { channels: [red, green, blue], .. }: Colour) -> C {
+        // As by `Albedo::new`.
+        let luma = 77 * u32::from(red) + 150 * u32::from(green) + 29 * u32::from(blue);
+        let reflected = by_fraction(quarter as i32, luma as u16) as u32;
+        let bias = bias(1 << (WALK - 1)) as u32;
+        self.0.shade([(reflected << (WALK - CHANNEL + QUARTER)).wrapping_add(highlight << (WALK - CHANNEL)).wrapping_add(bias)])
+    }
+}
+
+impl<C: Pixel> ByRows for GrayTexels<'_, C> {}
+
+impl<C: Pixel> PixelShader<(Colour, [u32; 1])> for GrayTexels<'_, C> {
+    type Pixel = C;
+
+    #[inline(always)]
+    fn shade(&self, (texel, [light]): (Colour, [u32; 1])) -> C {
+        self.gray(light, 0, texel)
+    }
+}
+
+impl<C: Pixel> PixelShader<(Colour, ([u32; 1], [u32; 1]))> for GrayTexels<'_, C> {
+    type Pixel = C;
+
+    #[inline(always)]
+    fn shade(&self, (texel, ([light], [highlight])): (Colour, ([u32; 1], [u32; 1]))) -> C {
+        self.gray(light, highlight, texel)
     }
 }
 

@@ -34,9 +34,10 @@ pub fn chosen<'f>(frame: &'f Frame, facet: &'f Facet, Chosen { way, raises }: Ch
         return painted(facet, texture, move |facet, p| chosen(frame, facet, Chosen { way, raises })(p));
     }
     let shade = match way {
-        // Under one light in three channels, or on a surface with colours, the core has no levels at the corners, but a cosine and a highlight.
+        // Under one light in three channels, or on a surface with colours, the core has no levels at the corners, but a cosine and a highlight. The light
+        // of a sky it has as a level.
         Way::OneColour => {
-            let one = frame.is_constant() && frame.lights.len() == 1;
+            let one = frame.is_constant() && frame.lights.len() == 1 && frame.lights.iter().all(|light| !light.is_sky);
             solid(frame, facet, one && (facet.albedos.is_some() || frame.only_channel(facet).is_none()))
         }
         Way::Linear => gouraud::shade(frame, facet),

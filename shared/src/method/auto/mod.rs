@@ -222,7 +222,7 @@ impl<const QUADRATICS: bool> Loops for Auto<QUADRATICS> {
                 Choice::Linear(_) => gouraud::corner_parts(setup, shading),
                 Choice::Quadratic | Choice::Cosines | Choice::Phong => return by::<Phong, _>(setup, shading, tables, band),
             };
-            return texture::fill(setup, shading, &parts, band);
+            return texture::fill(setup, shading, &parts, tables, band);
         }
         match choice {
             Choice::Solid(raise) => Some(setup.fill(|| Constant, Solid::face(solid(setup, shading, uniform, raise, tables)), band)),

@@ -55,7 +55,7 @@ impl Loops for Flat {
         band: &mut Band<'_, C>,
     ) -> Option<u32> {
         if setup.has_texture() {
-            return texture::fill(setup, shading, &[parts(setup, shading); 3], band);
+            return texture::fill(setup, shading, &[parts(setup, shading); 3], tables, band);
         }
         let colour = match shading.constant {
             Some([towards, half]) => {

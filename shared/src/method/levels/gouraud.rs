@@ -73,7 +73,7 @@ impl Loops for Gouraud {
     ) -> Option<u32> {
         let [a, b, c] = setup.corners;
         if setup.has_texture() {
-            return texture::fill(setup, shading, &corner_parts(setup, shading), band);
+            return texture::fill(setup, shading, &corner_parts(setup, shading), tables, band);
         }
         if PERSPECTIVE {
             match setup.linear_way(|| largest_range(corner_levels(setup, shading))) {

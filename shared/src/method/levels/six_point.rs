@@ -6,7 +6,7 @@
 use crate::{
     interpolate::by_column::ByColumn,
     lighting::{albedo::Parts, material_tables::MaterialTables},
-    method::{Facts, Loops, Method, RANGE, Shading, Style, TriangleSetup, VertexLight, channels, levels::gouraud, node::map_six},
+    method::{Facts, Loops, Method, RANGE, Shading, Style, TriangleSetup, VertexLight, channels, levels::gouraud, node::map_six, texture},
     pixel::Pixel,
     raster::{band::Band, canvas::Canvas},
 };
@@ -29,16 +29,18 @@ impl Method for SixPoint {
     }
 
     fn shade(&self, setup: &TriangleSetup<'_>, shading: &Shading<'_>, canvas: &mut dyn Canvas) -> u32 {
-        if setup.has_texture() {
-            return setup.draw_parts(parts(setup, shading), canvas);
-        }
         let on_screen = setup.on_screen();
         let area = if setup.has_screen_nodes() { &on_screen } else { setup };
+        if setup.has_texture() {
+            return area.draw_parts(parts(setup, shading), canvas);
+        }
         shading.draw_channels::<6, RANGE>(area, &levels(setup, shading), [0; 3], canvas)
     }
 }
 
 impl Loops for SixPoint {
+    const TEXTURES: bool = true;
+
     fn take(style: Style) -> bool {
         style.is_plain()
     }
@@ -52,6 +54,9 @@ impl Loops for SixPoint {
     ) -> Option<u32> {
         if !setup.has_screen_nodes() {
             return None;
+        }
+        if setup.has_texture() {
+            return texture::fill(setup, shading, &parts(setup, shading), tables, band);
         }
         let reflectance = shading.reflectance;
         // One constant light without a highlight is one number also in three channels.
