@@ -11,6 +11,7 @@ pub mod field;
 pub mod perspective;
 pub mod plane;
 pub mod quadric;
+pub(crate) mod squares;
 pub mod wide_quadric;
 
 /// A polynomial of one triangle, standing on one row.
@@ -212,13 +213,15 @@ impl<A: Walker, B: Walker> Walker for (A, B) {
 
 #[cfg(test)]
 mod tests {
-    use super::{Checkerboard, Patch, Walker, plane::Plane, quadric::Quadric};
+    use super::{Checkerboard, Patch, Walker, plane::Plane, quadric::Quadric, squares::Squares};
     use proptest::prelude::*;
 
-    /// Checks that `checkered` is half of the range higher than `plain` where one of column and row is even and the other odd. Both stand on one row.
-    fn check<P: Checkerboard<Walker: Walker<Value = [u32; 1]>>>(mut plain: P, row: i32, x: i32, jump: i32) -> Result<(), TestCaseError> {
-        let mut checkered = plain.checkered(row);
-        let mut row = row;
+    /// Checks that `checkered` is half of the range higher than `plain` where one of column and row is even and the other odd. Both stand on `row`.
+    fn check<P, Q>(mut plain: P, mut checkered: Q, mut row: i32, x: i32, jump: i32) -> Result<(), TestCaseError>
+    where
+        P: Patch<Walker: Walker<Value = [u32; 1]>>,
+        Q: Patch<Walker: Walker<Value = [u32; 1]>>,
+    {
         for step in 0..6 {
             let (mut walker, mut expected) = (checkered.enter(x), plain.enter(x));
             for column in (x - 5..x).rev() {
@@ -244,8 +247,10 @@ mod tests {
         /// The highest bit alternates from column to column and from row to row, also after a jump, and all other bits stay unchanged.
         #[test]
         fn the_highest_bit_is_a_checkerboard(words: [u32; 6], row in -3000..3000, x in -3000..3000, jump in -3000..3000) {
-            check(Plane::<1>::load(&words).expect("three words"), row, x, jump)?;
-            check(Quadric::<1>::load(&words).expect("six words"), row, x, jump)?;
+            let (plane, quadric) = (Plane::<1>::load(&words).expect("three words"), Quadric::<1>::load(&words).expect("six words"));
+            check(plane, plane.checkered(row), row, x, jump)?;
+            check(quadric, quadric.checkered(row), row, x, jump)?;
+            check(quadric, Squares::new(quadric, row), row, x, jump)?;
         }
     }
 }

@@ -32,6 +32,13 @@ pub trait Surface: Copy {
 
     /// The value at `point`.
     fn at(&self, point: &Point) -> Self::Value;
+
+    /// The quantity with `by` added to its values, see [`Patch::raised`].
+    #[inline(always)]
+    #[must_use]
+    fn raised(self, _by: &Self::Value) -> Self {
+        self
+    }
 }
 
 /// A field in perspective, standing on one row.
@@ -102,6 +109,14 @@ impl<S: Surface> Patch for PerspectivePatch<S> {
         let walked = self.rows.map(|row| (row.c.wrapping_add(row.dx.wrapping_mul(x.into())), row.dx));
         PerspectiveWalker { value: walked.map(|(value, _)| value), step: walked.map(|(_, step)| step), surface: self.surface }
     }
+
+    #[inline(always)]
+    fn raised(self, by: &S::Value) -> Self {
+        Self { surface: self.surface.raised(by), ..self }
+    }
+
+    /// More than there is room for.
+    const WORDS: usize = 1 << 8;
 }
 
 /// Walks a [`PerspectivePatch`].

@@ -29,7 +29,7 @@ use crate::{
     features::{ALWAYS_CONSTANT, COLOURED, COLOURS, PERSPECTIVE, SKIPS, TEXTURES},
     format::{BIAS, CHANNEL, INTENSITY, LEVEL, NORMAL_LENGTH, WALK},
     geometry::viewport::first_centre,
-    interpolate::{Checkerboard, each_channel, perspective::PerspectivePatch},
+    interpolate::{Checkerboard, each_channel, perspective::PerspectivePatch, squares::Squares},
     lighting::{
         albedo::{Albedo, IfColoured},
         material_tables::MaterialTables,
@@ -161,7 +161,7 @@ pub(crate) trait Loops {
     /// Whether the method has only the general loop.
     const GENERAL: bool = false;
 
-    /// Whether the loops leave some triangles of the styles that they take to the general loop, also without perspective.
+    /// Whether the loops leave some triangles of the styles that they take to the general loop, also without textures.
     const DECLINES: bool = true;
 
     /// Whether there are loops for textures.
@@ -188,7 +188,7 @@ pub(crate) trait Loops {
 /// Whether a program that draws by the loops `L` in the pixel format `C` needs the general loop: for some triangles, or for some styles.
 pub(crate) const fn needs_general<L: Loops, C: Pixel>() -> bool {
     // Of colours, only the curve of a display on three channels that are not light needs a canvas.
-    L::DECLINES || PERSPECTIVE || TEXTURES || COLOURS && !C::GRAY && !C::IS_LIGHT
+    L::DECLINES || TEXTURES || COLOURS && !C::GRAY && !C::IS_LIGHT
 }
 
 /// The type of [`Loops::draw`] in one pixel format.
@@ -324,6 +324,11 @@ impl TriangleSetup<'_> {
     /// A bound of the error of values that differ by `range` between corners, and that a plane on the screen interpolates; 0 if perspective is off.
     pub(crate) fn plane_error(&self, range: u32) -> u32 {
         self.inv_depth().map_or(0, |inv_depth| perspective::plane_error(inv_depth, range))
+    }
+
+    /// The quantity `surface` at the point in space that is seen at each pixel.
+    fn in_space<S: Surface>(&self, surface: S) -> PerspectivePatch<S> {
+        PerspectivePatch::new(self.gradients, self.corners.map(|corner| corner.depth), surface)
     }
 
     /// How values are interpolated on the screen that are linear over the triangle and differ by `range`, Q9.7, between corners: in the fastest way
@@ -584,15 +589,21 @@ pub fn levels_at<const N: usize>(levels: [[i32; 3]; N]) -> Nodes<N, 3, RANGE> {
     Nodes::new(channels(levels), EXTRA).biased([bias(0); 3])
 }
 
-/// The polynomial through levels at `N` nodes, Q9.7, as indices of the tables of colours of the pixel format `C`.
+/// Levels at `N` nodes, Q9.7, as indices of the tables of colours of the pixel format `C`.
+#[inline(always)]
+fn indices<const N: usize, C: Pixel>(levels: [i32; N]) -> Nodes<N, 1, RANGE> {
+    let bits = C::Ramps::BITS;
+    let bias = (BIAS << bits).wrapping_add(1 << (bits - 1));
+    Nodes::new([levels], bits - LEVEL).biased([bias])
+}
+
+/// The polynomial through [`indices`].
 #[inline(always)]
 fn fit_levels<const N: usize, C: Pixel>(gradients: &Gradients, levels: [i32; N]) -> <Nodes<N, 1, RANGE> as Field>::Patch
 where
     Nodes<N, 1, RANGE>: Field<Patch: Checkerboard>,
 {
-    let bits = C::Ramps::BITS;
-    let bias = (BIAS << bits).wrapping_add(1 << (bits - 1));
-    let patch = Nodes::<N, 1, RANGE>::new([levels], bits - LEVEL).biased([bias]).fit(gradients);
+    let patch = indices::<N, C>(levels).fit(gradients);
     if C::Ramps::CHECKERED { patch.checkered(gradients.row()) } else { patch }
 }
 
@@ -658,19 +669,40 @@ impl Shading<'_> {
         setup.fill(|| fit_levels::<N, C>(setup.gradients, nodes()), Ramp(tables.ramps), band)
     }
 
-    /// [`Self::draw_levels`] by loops of a method: three levels, `raise` more than at the nodes, whose polynomials are walked as `walked` says.
+    /// [`Self::draw_levels`] by loops of a method, from the nodes of each channel, at the point in space that is seen at each pixel.
+    #[inline(never)]
+    fn fill_in_space<const N: usize, C: Pixel>(
+        &self,
+        setup: &TriangleSetup<'_>,
+        channels: &[[i32; N]; 3],
+        tables: MaterialTables<'_, C>,
+        band: &mut Band<'_, C>,
+    ) -> u32
+    where
+        Nodes<N, 1, RANGE>: Surface<Value = [u32; 1]>,
+        Nodes<N, 3, RANGE>: Surface<Value = [u32; 3]>,
+    {
+        if !C::GRAY && self.reflectance.three_channels() {
+            return self.fill_three(setup, || *channels, 0, |nodes| setup.in_space(nodes), band);
+        }
+        let patch = || setup.in_space(indices::<N, C>(channels[0]));
+        if C::Ramps::CHECKERED {
+            setup.fill(|| Squares::new(patch(), setup.gradients.row()), Ramp(tables.ramps), band)
+        } else {
+            setup.fill(patch, Ramp(tables.ramps), band)
+        }
+    }
+
+    /// [`Self::draw_levels`] by loops of a method: three levels, `raise` more than at the nodes, interpolated as `fitted` says.
     #[inline(always)]
     fn fill_three<const N: usize, C: Pixel, P: Patch<Walker: Walker<Value = [u32; 3]>>>(
         &self,
         setup: &TriangleSetup<'_>,
         channels: impl FnOnce() -> [[i32; N]; 3],
         raise: i32,
-        walked: impl FnOnce(<Nodes<N, 3, RANGE> as Field>::Patch) -> P,
+        fitted: impl FnOnce(Nodes<N, 3, RANGE>) -> P,
         band: &mut Band<'_, C>,
-    ) -> u32
-    where
-        Nodes<N, 3, RANGE>: Field,
-    {
+    ) -> u32 {
         let half_steps = const {
             let [r, g, b] = C::LEVELS;
             [half_step(r), half_step(g), half_step(b)]
@@ -679,7 +711,7 @@ impl Shading<'_> {
             let raise = raise << (CHANNEL - LEVEL);
             let [r, g, b] = half_steps;
             let bias = [r + raise, g + raise, b + raise];
-            walked(Nodes::<N, 3, RANGE>::new(channels(), CHANNEL - LEVEL).biased(bias).fit(setup.gradients))
+            fitted(Nodes::new(channels(), CHANNEL - LEVEL).biased(bias))
         };
         setup.fill(patch, Rgb::new(self.reflectance.quarter()), band)
     }

@@ -97,8 +97,7 @@ impl TriangleSetup<'_> {
         if let Some(quadric) = by_quadratic(self, texture, self.way_of_places(texture)) {
             return PlacePatch::OnScreen(quadric);
         }
-        let surface = linear(corner_nodes(texture)).surface();
-        PlacePatch::InSpace(PerspectivePatch::new(self.gradients, self.corners.map(|corner| corner.depth), surface))
+        PlacePatch::InSpace(self.in_space(linear(corner_nodes(texture))))
     }
 
     /// How the place in a texture is interpolated.
@@ -114,6 +113,11 @@ impl TriangleSetup<'_> {
     pub(crate) fn texels(&self) -> Option<Placed<'_, ByColumn<Quadric<2>>>> {
         let texture = self.texture.first()?.as_ref()?;
         Some(Placed { place: ByColumn(by_quadratic(self, texture, self.way_of_places(texture))?), sampler: texture.sampler })
+    }
+
+    /// The texels at the points that are seen at each pixel.
+    fn place_in_space<'f>(&self, texture: &Textured<'f>) -> Placed<'f, PerspectivePatch<LinearNodes<2>>> {
+        Placed { place: self.in_space(linear(corner_nodes(texture))), sampler: texture.sampler }
     }
 
     /// The place in a texture as a plane on the screen.
@@ -286,6 +290,23 @@ impl<const CH: usize> Light<3, CH> {
         (spread(&self.diffuse) << QUARTER).max(spread(&self.specular))
     }
 
+    /// Draws a triangle that reaches so far that place and light are those of the point that is seen at each pixel.
+    #[inline(never)]
+    fn draw_in_space<C: Pixel, P: Pixels<C, CH>>(
+        &self,
+        setup: &TriangleSetup<'_>,
+        texture: &Textured<'_>,
+        pixels: P,
+        band: &mut Band<'_, C>,
+    ) -> Option<u32> {
+        if !self.is_less_than(P::MOST) {
+            return None;
+        }
+        let level = |levels| Nodes::<3, CH, RANGE>::new(levels, CHANNEL - LEVEL);
+        let seen = || setup.in_space((linear(corner_nodes(texture)), (level(self.diffuse), level(self.specular))));
+        Some(setup.fill(|| Painted { patch: seen(), sampler: texture.sampler }, pixels, band))
+    }
+
     /// The light at the corners and at these shares of the edges.
     fn six(&self, [ab, bc, ca]: [u16; 3]) -> Light<6, CH> {
         let six = |[a, b, c]: [i32; 3]| [a, b, c, mixed(a, b, ab), mixed(b, c, bc), mixed(c, a, ca)];
@@ -334,7 +355,7 @@ impl<const CH: usize> Drawn<CH> for Light<3, CH> {
         match setup.linear_way(|| self.range()) {
             LinearWay::Plane => {}
             LinearWay::Quadratic(shares) => return self.six(shares).draw(setup, texture, pixels, band),
-            LinearWay::InSpace => return None,
+            LinearWay::InSpace => return self.draw_in_space(setup, texture, pixels, band),
         }
         if !self.is_less_than(P::MOST) {
             return None;
@@ -343,20 +364,25 @@ impl<const CH: usize> Drawn<CH> for Light<3, CH> {
         let (light, highlights) = (|| fit(self.diffuse), || fit(self.specular));
         let sampler = texture.sampler;
         let way = setup.way_of_places(texture);
-        Some(if matches!(way, LinearWay::Plane) {
+        if matches!(way, LinearWay::Plane) {
             let place = || Placed::<_, true> { place: setup.place_by_plane(texture), sampler };
-            if self.is_matt() {
+            return Some(if self.is_matt() {
                 setup.fill(|| (place(), light()), pixels, band)
             } else {
                 setup.fill(|| (place(), (light(), highlights())), pixels, band)
+            });
+        }
+        let Some(quadratic) = by_quadratic(setup, texture, way) else {
+            if PERSPECTIVE && setup.inv_depth().is_some() {
+                return self.draw_in_space(setup, texture, pixels, band);
             }
+            return Some(setup.fill(|| (setup.place_in_space(texture), (light(), highlights())), pixels, band));
+        };
+        let place = Placed::<_, false> { place: ByColumn(quadratic), sampler };
+        Some(if self.is_matt() {
+            setup.fill(|| (place, light()), pixels, band)
         } else {
-            let place = Placed::<_, false> { place: ByColumn(by_quadratic(setup, texture, way)?), sampler };
-            if self.is_matt() {
-                setup.fill(|| (place, light()), pixels, band)
-            } else {
-                setup.fill(|| (place, (light(), highlights())), pixels, band)
-            }
+            setup.fill(|| (place, (light(), highlights())), pixels, band)
         })
     }
 }
@@ -373,13 +399,16 @@ impl<const CH: usize> Drawn<CH> for Light<6, CH> {
         if !self.is_less_than(P::MOST) {
             return None;
         }
-        let place =
-            Placed::<_, false> { place: ByColumn(by_quadratic(setup, texture, setup.way_of_places(texture))?), sampler: texture.sampler };
         let fit = |levels| ByColumn(Nodes::<6, CH, RANGE>::new(levels, CHANNEL - LEVEL).fit(setup.gradients));
+        let (light, highlights) = (|| fit(self.diffuse), || fit(self.specular));
+        let Some(quadratic) = by_quadratic(setup, texture, setup.way_of_places(texture)) else {
+            return Some(setup.fill(|| (setup.place_in_space(texture), (light(), highlights())), pixels, band));
+        };
+        let place = Placed::<_, false> { place: ByColumn(quadratic), sampler: texture.sampler };
         Some(if self.is_matt() {
-            setup.fill(|| (place, fit(self.diffuse)), pixels, band)
+            setup.fill(|| (place, light()), pixels, band)
         } else {
-            setup.fill(|| (place, (fit(self.diffuse), fit(self.specular))), pixels, band)
+            setup.fill(|| (place, (light(), highlights())), pixels, band)
         })
     }
 }
@@ -605,6 +634,61 @@ impl<W: Walker<Value = [u32; 2]>, const ALIGNED: bool> Walker for Placed<'_, W, 
 
     #[inline(always)]
     fn covers(texel: &Colour) -> bool {
+        !TRANSPARENCY || texel.hole == 0
+    }
+}
+
+/// The texel and the light at the point that is seen at each pixel.
+#[derive(Clone, Copy)]
+struct Painted<'f, P> {
+    patch: P,
+    sampler: &'f Sampler<'f>,
+}
+
+impl<'f, V, P: Patch<Walker: Walker<Value = ([u32; 2], V)>>> Patch for Painted<'f, P> {
+    type Walker = Painted<'f, P::Walker>;
+
+    #[inline(always)]
+    fn jump(&mut self, rows: i32) {
+        self.patch.jump(rows);
+    }
+
+    #[inline(always)]
+    fn step_row(&mut self) {
+        self.patch.step_row();
+    }
+
+    #[inline(always)]
+    fn enter(&self, x: i32) -> Self::Walker {
+        Painted { patch: self.patch.enter(x), sampler: self.sampler }
+    }
+
+    const WORDS: usize = P::WORDS;
+}
+
+impl<V, W: Walker<Value = ([u32; 2], V)>> Walker for Painted<'_, W> {
+    type Value = (Colour, V);
+
+    #[inline(always)]
+    fn step(&mut self) {
+        self.patch.step();
+    }
+
+    #[inline(always)]
+    fn value(&self) -> Self::Value {
+        let (place, light) = self.patch.value();
+        (self.sampler.texel(self.sampler.aligned(place)), light)
+    }
+
+    const HAS_HOLES: bool = TRANSPARENCY;
+
+    #[inline(always)]
+    fn may_have_holes(&self) -> bool {
+        TRANSPARENCY && self.sampler.has_holes
+    }
+
+    #[inline(always)]
+    fn covers((texel, _): &Self::Value) -> bool {
         !TRANSPARENCY || texel.hole == 0
     }
 }

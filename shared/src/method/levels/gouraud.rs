@@ -79,7 +79,7 @@ impl Loops for Gouraud {
             match setup.linear_way(|| largest_range(corner_levels(setup, shading))) {
                 LinearWay::Plane => {}
                 LinearWay::Quadratic(middles) => return Some(draw_seen(setup, shading, middles, tables, band)),
-                LinearWay::InSpace => return None,
+                LinearWay::InSpace => return Some(draw_in_space(setup, shading, tables, band)),
             }
         }
         // In colours, meshes with colours at their corners have three channels.
@@ -95,7 +95,7 @@ impl Loops for Gouraud {
                 let [[r0, g0, b0], [r1, g1, b1], [r2, g2, b2]] = setup.levels();
                 [[r0, r1, r2], [g0, g1, g2], [b0, b1, b2]]
             };
-            return Some(shading.fill_three(setup, channels, 0, |plane| plane, band));
+            return Some(shading.fill_three(setup, channels, 0, |nodes| nodes.fit(setup.gradients), band));
         }
         Some(draw_three(setup, shading, 0, tables, band))
     }
@@ -148,7 +148,7 @@ pub(crate) fn draw_three<C: Pixel>(
         let [[r0, g0, b0], [r1, g1, b1], [r2, g2, b2]] = reflections([a, b, c], setup.albedos, reflectance);
         [[r0, r1, r2], [g0, g1, g2], [b0, b1, b2]]
     };
-    shading.fill_three(setup, channels, raise, |plane| plane, band)
+    shading.fill_three(setup, channels, raise, |nodes| nodes.fit(setup.gradients), band)
 }
 
 /// Draws a triangle of one colour, under light without a hue that has these levels at the corners: each channel is a product of one walked level.
@@ -186,7 +186,13 @@ fn draw_seen<C: Pixel>(
     if C::GRAY || !reflectance.three_channels() {
         return Shading::fill_one(setup, || six(levels()[0]), tables, band);
     }
-    shading.fill_three(setup, || levels().map(six), 0, ByColumn, band)
+    shading.fill_three(setup, || levels().map(six), 0, |nodes| ByColumn(nodes.fit(setup.gradients)), band)
+}
+
+/// Draws a triangle that reaches so far that the light at each pixel is that of the point in space. Returns the number of its pixels in `band`.
+#[inline(never)]
+fn draw_in_space<C: Pixel>(setup: &TriangleSetup<'_>, shading: &Shading<'_>, tables: MaterialTables<'_, C>, band: &mut Band<'_, C>) -> u32 {
+    shading.fill_in_space(setup, &channels(corner_levels(setup, shading)), tables, band)
 }
 
 /// A function of its own: measured, the loop that draws the triangle has more registers then.

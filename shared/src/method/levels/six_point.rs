@@ -4,7 +4,7 @@
 //! perspective. It is good for wide highlights or fine meshes. A highlight narrower than a triangle is flattened.
 
 use crate::{
-    interpolate::by_column::ByColumn,
+    interpolate::{by_column::ByColumn, field::Field},
     lighting::{albedo::Parts, material_tables::MaterialTables},
     method::{Facts, Loops, Method, RANGE, Shading, Style, TriangleSetup, VertexLight, channels, levels::gouraud, node::map_six, texture},
     pixel::Pixel,
@@ -39,6 +39,7 @@ impl Method for SixPoint {
 }
 
 impl Loops for SixPoint {
+    const DECLINES: bool = false;
     const TEXTURES: bool = true;
 
     fn take(style: Style) -> bool {
@@ -52,11 +53,11 @@ impl Loops for SixPoint {
         tables: MaterialTables<'_, C>,
         band: &mut Band<'_, C>,
     ) -> Option<u32> {
-        if !setup.has_screen_nodes() {
-            return None;
-        }
         if setup.has_texture() {
-            return texture::fill(setup, shading, &parts(setup, shading), tables, band);
+            return if setup.has_screen_nodes() { texture::fill(setup, shading, &parts(setup, shading), tables, band) } else { None };
+        }
+        if !setup.has_screen_nodes() {
+            return Some(shading.fill_in_space(setup, &levels(setup, shading), tables, band));
         }
         let reflectance = shading.reflectance;
         // One constant light without a highlight is one number also in three channels.
@@ -77,7 +78,7 @@ impl Loops for SixPoint {
 /// Draws `setup` in three channels.
 #[inline(never)]
 fn draw_rgb<C: Pixel>(setup: &TriangleSetup<'_>, shading: &Shading<'_>, band: &mut Band<'_, C>) -> u32 {
-    shading.fill_three(setup, || levels(&setup.for_lighting(), shading), 0, ByColumn, band)
+    shading.fill_three(setup, || levels(&setup.for_lighting(), shading), 0, |nodes| ByColumn(nodes.fit(setup.gradients)), band)
 }
 
 /// N·L (Q2.30) and the highlight (unsigned Q0.16) of one constant light at the six nodes.
