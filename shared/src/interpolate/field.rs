@@ -5,7 +5,7 @@
 
 use crate::{
     interpolate::{
-        Constant, Patch, Walker, each_channel,
+        Constant, Patch, Walker,
         perspective::{Point, SHARE, Surface},
         plane::Plane,
         quadric::Quadric,
@@ -149,12 +149,6 @@ impl<const CH: usize, const BITS: u32> Surface for Nodes<3, CH, BITS> {
     fn at(&self, point: &Point) -> [u32; CH] {
         self.blend(point.0).map(|value| value as u32)
     }
-
-    #[inline(always)]
-    fn raised(mut self, by: &[u32; CH]) -> Self {
-        each_channel::<CH>(|c| self.bias[c] = self.bias[c].wrapping_add(by[c] as i32));
-        self
-    }
 }
 
 impl<const CH: usize, const BITS: u32> Surface for Nodes<6, CH, BITS> {
@@ -163,11 +157,5 @@ impl<const CH: usize, const BITS: u32> Surface for Nodes<6, CH, BITS> {
     #[inline(always)]
     fn at(&self, point: &Point) -> [u32; CH] {
         self.blend(point.six()).map(|value| value as u32)
-    }
-
-    #[inline(always)]
-    fn raised(mut self, by: &[u32; CH]) -> Self {
-        each_channel::<CH>(|c| self.bias[c] = self.bias[c].wrapping_add(by[c] as i32));
-        self
     }
 }

@@ -6,13 +6,20 @@
 //! numerator shrink with w^d, and its precision with them. So the three linear numerators of the barycentric coordinates are walked
 //! instead, whatever is interpolated, and the polynomial is evaluated at the pixel.
 //!
-//! Cost: 3 additions of 64 bits a step; at each pixel that is seen a reciprocal, 2 products, and Lagrange's weights of the
+//! Loops of a pixel format walk them in words ([`Seen`]), and everything else in long words.
+//!
+//! Cost: 3 additions a step; at each pixel that is seen a reciprocal, 2 products, and Lagrange's weights of the
 //! nodes: none for planes, 6 products for quadratics, and then a product per node and channel.
 //! Set-up: three planes instead of a fit of each channel.
 
 use crate::{
-    interpolate::{Patch, Walker},
-    math::recip::recip,
+    arch::product::product,
+    interpolate::{
+        Patch, Walker, each_channel,
+        field::{Field, Nodes},
+        plane::{LinearWalker, Plane},
+    },
+    math::{recip::recip, vector::map},
     setup::gradients::Gradients,
 };
 
@@ -72,14 +79,19 @@ impl<S: Surface> PerspectivePatch<S> {
 /// The linear functions whose quotients are the barycentric coordinates, for corners with this inverse depth.
 #[inline(never)]
 fn rows(gradients: &Gradients, inv_depth: [i32; 3]) -> [PerspectiveRow; 3] {
-    // A common factor cancels out, so the largest inverse depth is scaled to just below 1.
-    let zeros = inv_depth.iter().fold(1, |m, w| m | w).leading_zeros();
-    let [a, b, c] = inv_depth.map(|w| w.wrapping_shl(zeros.saturating_sub(2)));
     let row = |nodes| {
         let [c, dx, dy] = gradients.fine(nodes);
         PerspectiveRow { c: c.wrapping_sub(dx.wrapping_mul(gradients.column().into())), dx, dy }
     };
-    [row([0, b, 0]), row([0, 0, c]), row([a, b, c])]
+    map(numerators(inv_depth), row)
+}
+
+/// The numerators of the barycentric coordinates 1 and 2 and their denominator at the corners, which have this inverse depth. A common factor cancels
+/// out, so the largest is scaled to just below 1, Q2.30.
+fn numerators(inv_depth: [i32; 3]) -> [[i32; 3]; 3] {
+    let zeros = inv_depth.iter().fold(1, |m, w| m | w).leading_zeros();
+    let [a, b, c] = map(inv_depth, |w| w.wrapping_shl(zeros.saturating_sub(2)));
+    [[0, b, 0], [0, 0, c], [a, b, c]]
 }
 
 impl<S> PerspectivePatch<S> {
@@ -109,14 +121,6 @@ impl<S: Surface> Patch for PerspectivePatch<S> {
         let walked = self.rows.map(|row| (row.c.wrapping_add(row.dx.wrapping_mul(x.into())), row.dx));
         PerspectiveWalker { value: walked.map(|(value, _)| value), step: walked.map(|(_, step)| step), surface: self.surface }
     }
-
-    #[inline(always)]
-    fn raised(self, by: &S::Value) -> Self {
-        Self { surface: self.surface.raised(by), ..self }
-    }
-
-    /// More than there is room for.
-    const WORDS: usize = 1 << 8;
 }
 
 /// Walks a [`PerspectivePatch`].
@@ -144,7 +148,148 @@ impl<S: Surface> Walker for PerspectiveWalker<S> {
     }
 }
 
+/// [`PerspectivePatch`] in words.
+#[derive(Clone, Copy, Debug)]
+pub(crate) struct Seen<S> {
+    numerators: Plane<3>,
+    surface: S,
+}
+
+/// Pixels of width and height, times the largest inverse depth over the least, up to which words are exact enough.
+const REACH: u64 = 1 << 17;
+
+impl<S> Seen<S> {
+    /// The field `surface` on a triangle of so many pixels in width and height together, whose corners have this inverse depth, all positive; `None` if it
+    /// reaches too far for words.
+    ///
+    /// Error of barycentric coordinates: 2^-13 besides that of [`PerspectivePatch::new`], which is 1/32 of a level and of a texel. Each coefficient is
+    /// off by 2^-31, times the pixels that it is walked, over the least denominator; and there are two in each number and two numbers in a quotient.
+    pub(crate) fn new(gradients: &Gradients, inv_depth: [i32; 3], pixels: u32, surface: S) -> Option<Self> {
+        let [a, b, c] = map(inv_depth, |w| w.max(1) as u64);
+        let reaches_far = a.max(b).max(c) * u64::from(pixels) > a.min(b).min(c) * REACH;
+        (!reaches_far).then(|| Self { numerators: Nodes::<3, 3>::new(numerators(inv_depth), 0).fit(gradients), surface })
+    }
+
+    /// Replaces the field, on this triangle.
+    pub(crate) fn with<T>(&self, surface: T) -> Seen<T> {
+        Seen { numerators: self.numerators, surface }
+    }
+}
+
+impl<S: Surface> Patch for Seen<S> {
+    type Walker = SeenWalker<S>;
+
+    #[inline(always)]
+    fn jump(&mut self, rows: i32) {
+        self.numerators.jump(rows);
+    }
+
+    #[inline(always)]
+    fn step_row(&mut self) {
+        self.numerators.step_row();
+    }
+
+    #[inline(always)]
+    fn enter(&self, x: i32) -> SeenWalker<S> {
+        SeenWalker { numerators: self.numerators.enter(x), surface: self.surface }
+    }
+
+    #[inline(always)]
+    fn raised(self, by: &S::Value) -> Self {
+        Self { surface: self.surface.raised(by), ..self }
+    }
+
+    /// More than there is room for.
+    const WORDS: usize = 1 << 8;
+}
+
+/// A linear quantity for [`Seen`].
+#[derive(Clone, Copy, Debug)]
+pub(crate) struct Slant<const CH: usize> {
+    /// The value at corner 0.
+    base: [i32; CH],
+    /// What corners 1 and 2 have more, 2^[`COARSER`] times as coarse, and so far to the left that the upper word of a product with a coordinate is the
+    /// share of it.
+    along: [[i32; 2]; CH],
+}
+
+/// Fraction bits that a share lacks, so that products fit.
+const COARSER: u32 = 3;
+
+impl<const CH: usize> Slant<CH> {
+    /// The plane through `nodes`. Domain: their range and the fraction bits that they are walked with have 31 bits together. Error: 2^[`COARSER`] units of
+    /// a walked value.
+    #[inline(always)]
+    pub(crate) fn new<const BITS: u32>(nodes: &Nodes<3, CH, BITS>) -> Self {
+        let left = nodes.extra + (32 - SHARE) - COARSER;
+        let mut plane = Self { base: nodes.bias, along: [[0; 2]; CH] };
+        each_channel::<CH>(|channel| {
+            let [a, b, c] = nodes.values[channel];
+            plane.base[channel] = plane.base[channel].wrapping_add(a << nodes.extra);
+            plane.along[channel] = [(b - a) << left, (c - a) << left];
+        });
+        plane
+    }
+}
+
+impl<const CH: usize> Surface for Slant<CH> {
+    type Value = [u32; CH];
+
+    #[inline(always)]
+    fn at(&self, &Point([_, s, t]): &Point) -> [u32; CH] {
+        let mut values = [0; CH];
+        each_channel::<CH>(|channel| {
+            let [to_b, to_c] = self.along[channel];
+            let shares = ((product(to_b, s) + product(to_c, t)) >> 32) as i32;
+            values[channel] = self.base[channel].wrapping_add(shares << COARSER) as u32;
+        });
+        values
+    }
+
+    #[inline(always)]
+    fn raised(mut self, by: &[u32; CH]) -> Self {
+        each_channel::<CH>(|channel| self.base[channel] = self.base[channel].wrapping_add(by[channel] as i32));
+        self
+    }
+}
+
+/// Walks [`Seen`].
+#[derive(Clone, Copy, Debug)]
+pub(crate) struct SeenWalker<S> {
+    numerators: LinearWalker<3>,
+    surface: S,
+}
+
+impl<S: Surface> Walker for SeenWalker<S> {
+    type Value = S::Value;
+
+    #[inline(always)]
+    fn step(&mut self) {
+        self.numerators.step();
+    }
+
+    #[inline(always)]
+    fn value(&self) -> S::Value {
+        let [s, t, whole] = self.numerators.value();
+        self.surface.at(&Point::in_words(s, t, whole))
+    }
+}
+
 impl Point {
+    /// [`Self::new`] in words.
+    #[inline(always)]
+    fn in_words(s: u32, t: u32, whole: u32) -> Self {
+        let whole = (whole as i32).max(1) as u32;
+        let zeros = whole.leading_zeros() & 31;
+        let inverse = recip(whole << zeros) as i32;
+        // The shift is one less where `whole` is at least 1, which is beside the triangle.
+        let coordinate =
+            |part: u32, most: i32| ((product((part << (zeros.wrapping_sub(2) & 31)) as i32, inverse) >> SHARE) as i32).clamp(0, most);
+        let s = coordinate(s, ONE as i32);
+        let t = coordinate(t, ONE as i32 - s);
+        Self([ONE as i32 - s - t, s, t])
+    }
+
     /// The point with the barycentric coordinates `s / whole` and `t / whole` of corners 1 and 2, moved into the triangle. Beside a sliver one over
     /// the distance nears zero, and quotients would grow without limit.
     #[inline(always)]

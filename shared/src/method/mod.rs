@@ -27,9 +27,12 @@ mod weakening;
 use crate::{
     arch::product::by_fraction,
     features::{ALWAYS_CONSTANT, COLOURED, COLOURS, PERSPECTIVE, SKIPS, TEXTURES},
-    format::{BIAS, CHANNEL, INTENSITY, LEVEL, NORMAL_LENGTH, WALK},
+    format::{BIAS, CHANNEL, INTENSITY, LEVEL, NORMAL_LENGTH, SUBPIXEL, WALK},
     geometry::viewport::first_centre,
-    interpolate::{Checkerboard, each_channel, perspective::PerspectivePatch, squares::Squares},
+    interpolate::{
+        Checkerboard, each_channel,
+        perspective::{PerspectivePatch, Seen},
+    },
     lighting::{
         albedo::{Albedo, IfColoured},
         material_tables::MaterialTables,
@@ -161,7 +164,8 @@ pub(crate) trait Loops {
     /// Whether the method has only the general loop.
     const GENERAL: bool = false;
 
-    /// Whether the loops leave some triangles of the styles that they take to the general loop, also without textures.
+    /// Whether the loops leave some triangles of the styles that they take to the general loop, also without perspective and
+    /// textures.
     const DECLINES: bool = true;
 
     /// Whether there are loops for textures.
@@ -188,7 +192,7 @@ pub(crate) trait Loops {
 /// Whether a program that draws by the loops `L` in the pixel format `C` needs the general loop: for some triangles, or for some styles.
 pub(crate) const fn needs_general<L: Loops, C: Pixel>() -> bool {
     // Of colours, only the curve of a display on three channels that are not light needs a canvas.
-    L::DECLINES || TEXTURES || COLOURS && !C::GRAY && !C::IS_LIGHT
+    L::DECLINES || PERSPECTIVE || TEXTURES || COLOURS && !C::GRAY && !C::IS_LIGHT
 }
 
 /// The type of [`Loops::draw`] in one pixel format.
@@ -326,9 +330,11 @@ impl TriangleSetup<'_> {
         self.inv_depth().map_or(0, |inv_depth| perspective::plane_error(inv_depth, range))
     }
 
-    /// The quantity `surface` at the point in space that is seen at each pixel.
-    fn in_space<S: Surface>(&self, surface: S) -> PerspectivePatch<S> {
-        PerspectivePatch::new(self.gradients, self.corners.map(|corner| corner.depth), surface)
+    /// The quantity `surface` at the point in space that is seen at each pixel, for loops of a pixel format; `None` if the triangle reaches too far.
+    fn in_space<S>(&self, surface: S) -> Option<Seen<S>> {
+        let [a, b, c] = self.screen.corners();
+        let extent = |k: usize| a[k].max(b[k]).max(c[k]).wrapping_sub(a[k].min(b[k]).min(c[k])) as u32 >> SUBPIXEL;
+        Seen::new(self.gradients, self.corners.map(|corner| corner.depth), extent(0) + extent(1), surface)
     }
 
     /// How values are interpolated on the screen that are linear over the triangle and differ by `range`, Q9.7, between corners: in the fastest way
@@ -667,30 +673,6 @@ impl Shading<'_> {
         Nodes<N, 1, RANGE>: Field<Value = [u32; 1], Patch: Checkerboard>,
     {
         setup.fill(|| fit_levels::<N, C>(setup.gradients, nodes()), Ramp(tables.ramps), band)
-    }
-
-    /// [`Self::draw_levels`] by loops of a method, from the nodes of each channel, at the point in space that is seen at each pixel.
-    #[inline(never)]
-    fn fill_in_space<const N: usize, C: Pixel>(
-        &self,
-        setup: &TriangleSetup<'_>,
-        channels: &[[i32; N]; 3],
-        tables: MaterialTables<'_, C>,
-        band: &mut Band<'_, C>,
-    ) -> u32
-    where
-        Nodes<N, 1, RANGE>: Surface<Value = [u32; 1]>,
-        Nodes<N, 3, RANGE>: Surface<Value = [u32; 3]>,
-    {
-        if !C::GRAY && self.reflectance.three_channels() {
-            return self.fill_three(setup, || *channels, 0, |nodes| setup.in_space(nodes), band);
-        }
-        let patch = || setup.in_space(indices::<N, C>(channels[0]));
-        if C::Ramps::CHECKERED {
-            setup.fill(|| Squares::new(patch(), setup.gradients.row()), Ramp(tables.ramps), band)
-        } else {
-            setup.fill(patch, Ramp(tables.ramps), band)
-        }
     }
 
     /// [`Self::draw_levels`] by loops of a method: three levels, `raise` more than at the nodes, interpolated as `fitted` says.

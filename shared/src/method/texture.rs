@@ -16,7 +16,7 @@ use crate::{
         Patch, Walker,
         by_column::ByColumn,
         field::{Field, Nodes},
-        perspective::PerspectivePatch,
+        perspective::{PerspectivePatch, Seen, Slant},
         plane::Plane,
         quadric::Quadric,
     },
@@ -97,7 +97,7 @@ impl TriangleSetup<'_> {
         if let Some(quadric) = by_quadratic(self, texture, self.way_of_places(texture)) {
             return PlacePatch::OnScreen(quadric);
         }
-        PlacePatch::InSpace(self.in_space(linear(corner_nodes(texture))))
+        PlacePatch::InSpace(PerspectivePatch::new(self.gradients, self.corners.map(|corner| corner.depth), linear(corner_nodes(texture))))
     }
 
     /// How the place in a texture is interpolated.
@@ -116,8 +116,8 @@ impl TriangleSetup<'_> {
     }
 
     /// The texels at the points that are seen at each pixel.
-    fn place_in_space<'f>(&self, texture: &Textured<'f>) -> Placed<'f, PerspectivePatch<LinearNodes<2>>> {
-        Placed { place: self.in_space(linear(corner_nodes(texture))), sampler: texture.sampler }
+    fn place_in_space<'f>(&self, texture: &Textured<'f>) -> Option<Placed<'f, Seen<Slant<2>>>> {
+        Some(Placed { place: self.in_space(Slant::new(&linear(corner_nodes(texture))))?, sampler: texture.sampler })
     }
 
     /// The place in a texture as a plane on the screen.
@@ -302,9 +302,9 @@ impl<const CH: usize> Light<3, CH> {
         if !self.is_less_than(P::MOST) {
             return None;
         }
-        let level = |levels| Nodes::<3, CH, RANGE>::new(levels, CHANNEL - LEVEL);
-        let seen = || setup.in_space((linear(corner_nodes(texture)), (level(self.diffuse), level(self.specular))));
-        Some(setup.fill(|| Painted { patch: seen(), sampler: texture.sampler }, pixels, band))
+        let level = |levels| Slant::new(&Nodes::<3, CH, RANGE>::new(levels, CHANNEL - LEVEL));
+        let seen = setup.in_space((Slant::new(&linear(corner_nodes(texture))), (level(self.diffuse), level(self.specular))))?;
+        Some(setup.fill(|| Painted { patch: seen, sampler: texture.sampler }, pixels, band))
     }
 
     /// The light at the corners and at these shares of the edges.
@@ -376,7 +376,8 @@ impl<const CH: usize> Drawn<CH> for Light<3, CH> {
             if PERSPECTIVE && setup.inv_depth().is_some() {
                 return self.draw_in_space(setup, texture, pixels, band);
             }
-            return Some(setup.fill(|| (setup.place_in_space(texture), (light(), highlights())), pixels, band));
+            let place = setup.place_in_space(texture)?;
+            return Some(setup.fill(|| (place, (light(), highlights())), pixels, band));
         };
         let place = Placed::<_, false> { place: ByColumn(quadratic), sampler };
         Some(if self.is_matt() {
@@ -402,7 +403,8 @@ impl<const CH: usize> Drawn<CH> for Light<6, CH> {
         let fit = |levels| ByColumn(Nodes::<6, CH, RANGE>::new(levels, CHANNEL - LEVEL).fit(setup.gradients));
         let (light, highlights) = (|| fit(self.diffuse), || fit(self.specular));
         let Some(quadratic) = by_quadratic(setup, texture, setup.way_of_places(texture)) else {
-            return Some(setup.fill(|| (setup.place_in_space(texture), (light(), highlights())), pixels, band));
+            let place = setup.place_in_space(texture)?;
+            return Some(setup.fill(|| (place, (light(), highlights())), pixels, band));
         };
         let place = Placed::<_, false> { place: ByColumn(quadratic), sampler: texture.sampler };
         Some(if self.is_matt() {

@@ -11,7 +11,9 @@ use crate::{
     interpolate::{
         by_column::ByColumn,
         field::{Field, Nodes},
+        perspective::Slant,
         plane::Plane,
+        squares::Squares,
     },
     lighting::{
         albedo::{Albedo, IfColoured, Parts},
@@ -21,10 +23,10 @@ use crate::{
     },
     math::vector::{map, zip},
     method::{
-        Facts, LinearWay, Loops, Method, RANGE, Shading, Style, TriangleSetup, VertexLight, channels, fit_levels, largest, largest_range,
-        node::mixed, texture,
+        Facts, LinearWay, Loops, Method, RANGE, Shading, Style, TriangleSetup, VertexLight, channels, fit_levels, indices, largest,
+        largest_range, node::mixed, texture,
     },
-    pixel::Pixel,
+    pixel::{Pixel, ramps::Ramps},
     raster::{
         band::Band,
         canvas::Canvas,
@@ -79,7 +81,7 @@ impl Loops for Gouraud {
             match setup.linear_way(|| largest_range(corner_levels(setup, shading))) {
                 LinearWay::Plane => {}
                 LinearWay::Quadratic(middles) => return Some(draw_seen(setup, shading, middles, tables, band)),
-                LinearWay::InSpace => return Some(draw_in_space(setup, shading, tables, band)),
+                LinearWay::InSpace => return draw_in_space(setup, shading, tables, band),
             }
         }
         // In colours, meshes with colours at their corners have three channels.
@@ -189,10 +191,26 @@ fn draw_seen<C: Pixel>(
     shading.fill_three(setup, || levels().map(six), 0, |nodes| ByColumn(nodes.fit(setup.gradients)), band)
 }
 
-/// Draws a triangle that reaches so far that the light at each pixel is that of the point in space. Returns the number of its pixels in `band`.
+/// Draws a triangle that reaches so far that the light at each pixel is that of the point in space. Returns the number of its pixels in
+/// `band`; `None` if it reaches too far.
 #[inline(never)]
-fn draw_in_space<C: Pixel>(setup: &TriangleSetup<'_>, shading: &Shading<'_>, tables: MaterialTables<'_, C>, band: &mut Band<'_, C>) -> u32 {
-    shading.fill_in_space(setup, &channels(corner_levels(setup, shading)), tables, band)
+fn draw_in_space<C: Pixel>(
+    setup: &TriangleSetup<'_>,
+    shading: &Shading<'_>,
+    tables: MaterialTables<'_, C>,
+    band: &mut Band<'_, C>,
+) -> Option<u32> {
+    let (seen, reflectance) = (setup.in_space(())?, shading.reflectance);
+    let channels = channels(corner_levels(setup, shading));
+    if !C::GRAY && reflectance.three_channels() {
+        return Some(shading.fill_three(setup, || channels, 0, |nodes| seen.with(Slant::new(&nodes)), band));
+    }
+    let patch = || seen.with(Slant::new(&indices::<3, C>(channels[0])));
+    Some(if C::Ramps::CHECKERED {
+        setup.fill(|| Squares::new(patch(), setup.gradients.row()), Ramp(tables.ramps), band)
+    } else {
+        setup.fill(patch, Ramp(tables.ramps), band)
+    })
 }
 
 /// A function of its own: measured, the loop that draws the triangle has more registers then.

@@ -39,7 +39,6 @@ impl Method for SixPoint {
 }
 
 impl Loops for SixPoint {
-    const DECLINES: bool = false;
     const TEXTURES: bool = true;
 
     fn take(style: Style) -> bool {
@@ -53,11 +52,11 @@ impl Loops for SixPoint {
         tables: MaterialTables<'_, C>,
         band: &mut Band<'_, C>,
     ) -> Option<u32> {
-        if setup.has_texture() {
-            return if setup.has_screen_nodes() { texture::fill(setup, shading, &parts(setup, shading), tables, band) } else { None };
-        }
         if !setup.has_screen_nodes() {
-            return Some(shading.fill_in_space(setup, &levels(setup, shading), tables, band));
+            return None;
+        }
+        if setup.has_texture() {
+            return texture::fill(setup, shading, &parts(setup, shading), tables, band);
         }
         let reflectance = shading.reflectance;
         // One constant light without a highlight is one number also in three channels.
