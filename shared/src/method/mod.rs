@@ -613,6 +613,17 @@ where
     if C::Ramps::CHECKERED { patch.checkered(gradients.row()) } else { patch }
 }
 
+/// Levels of three channels at `N` nodes, `raise` more, as [`Rgb`] takes them in the pixel format `C`.
+#[inline(always)]
+fn three_levels<const N: usize, C: Pixel>(channels: [[i32; N]; 3], raise: i32) -> Nodes<N, 3, RANGE> {
+    let [r, g, b] = const {
+        let [r, g, b] = C::LEVELS;
+        [half_step(r), half_step(g), half_step(b)]
+    };
+    let raise = raise << (CHANNEL - LEVEL);
+    Nodes::new(channels, CHANNEL - LEVEL).biased([r + raise, g + raise, b + raise])
+}
+
 /// The bias of walked levels plus `more`.
 const fn bias(more: i32) -> i32 {
     (BIAS << WALK).wrapping_add(more)
@@ -675,26 +686,20 @@ impl Shading<'_> {
         setup.fill(|| fit_levels::<N, C>(setup.gradients, nodes()), Ramp(tables.ramps), band)
     }
 
-    /// [`Self::draw_levels`] by loops of a method: three levels, `raise` more than at the nodes, interpolated as `fitted` says.
+    /// [`Self::draw_levels`] by loops of a method: three levels, `raise` more than at the nodes, whose polynomials are walked as `walked` says.
     #[inline(always)]
     fn fill_three<const N: usize, C: Pixel, P: Patch<Walker: Walker<Value = [u32; 3]>>>(
         &self,
         setup: &TriangleSetup<'_>,
         channels: impl FnOnce() -> [[i32; N]; 3],
         raise: i32,
-        fitted: impl FnOnce(Nodes<N, 3, RANGE>) -> P,
+        walked: impl FnOnce(<Nodes<N, 3, RANGE> as Field>::Patch) -> P,
         band: &mut Band<'_, C>,
-    ) -> u32 {
-        let half_steps = const {
-            let [r, g, b] = C::LEVELS;
-            [half_step(r), half_step(g), half_step(b)]
-        };
-        let patch = || {
-            let raise = raise << (CHANNEL - LEVEL);
-            let [r, g, b] = half_steps;
-            let bias = [r + raise, g + raise, b + raise];
-            fitted(Nodes::new(channels(), CHANNEL - LEVEL).biased(bias))
-        };
+    ) -> u32
+    where
+        Nodes<N, 3, RANGE>: Field,
+    {
+        let patch = || walked(three_levels::<N, C>(channels(), raise).fit(setup.gradients));
         setup.fill(patch, Rgb::new(self.reflectance.quarter()), band)
     }
 }

@@ -22,7 +22,7 @@ mod way;
 
 use crate::{
     format::FULL,
-    interpolate::{Constant, by_column::ByColumn, field::Field},
+    interpolate::{Constant, by_column::ByColumn},
     lighting::{
         albedo::{Albedo, Parts},
         material_tables::MaterialTables,
@@ -228,7 +228,7 @@ impl<const QUADRATICS: bool> Loops for Auto<QUADRATICS> {
             Choice::Solid(raise) => Some(setup.fill(|| Constant, Solid::face(solid(setup, shading, uniform, raise, tables)), band)),
             Choice::Linear(raise) if under_two => {
                 let channels = || channels(corner_levels(setup, shading, uniform));
-                Some(shading.fill_three(setup, channels, raise, |nodes| nodes.fit(setup.gradients), band))
+                Some(shading.fill_three(setup, channels, raise, |plane| plane, band))
             }
             // In greys vertices have no levels where lights are summed.
             Choice::Linear(raise) if C::GRAY && tables.reflectance.sums_lights() => {
@@ -238,7 +238,7 @@ impl<const QUADRATICS: bool> Loops for Auto<QUADRATICS> {
             Choice::Linear(raise) if THREE => Some(gouraud::draw_three(setup, shading, raise, tables, band)),
             Choice::Linear(raise) => Some(gouraud::draw_one(setup, raise, tables, band)),
             Choice::Quadratic if QUADRATICS && under_two => {
-                Some(shading.fill_three(setup, || six_under_two(setup, shading), 0, |nodes| ByColumn(nodes.fit(setup.gradients)), band))
+                Some(shading.fill_three(setup, || six_under_two(setup, shading), 0, ByColumn, band))
             }
             Choice::Quadratic if QUADRATICS => by::<SixPoint, _>(setup, shading, tables, band),
             Choice::Cosines if QUADRATICS => by::<SixCosines, _>(setup, shading, tables, band),

@@ -24,13 +24,13 @@ use crate::{
     math::vector::{map, zip},
     method::{
         Facts, LinearWay, Loops, Method, RANGE, Shading, Style, TriangleSetup, VertexLight, channels, fit_levels, indices, largest,
-        largest_range, node::mixed, texture,
+        largest_range, node::mixed, texture, three_levels,
     },
     pixel::{Pixel, ramps::Ramps},
     raster::{
         band::Band,
         canvas::Canvas,
-        pixel_shader::{PixelShader, Ramp},
+        pixel_shader::{PixelShader, Ramp, Rgb},
     },
     setup::gradients::Gradients,
 };
@@ -97,7 +97,7 @@ impl Loops for Gouraud {
                 let [[r0, g0, b0], [r1, g1, b1], [r2, g2, b2]] = setup.levels();
                 [[r0, r1, r2], [g0, g1, g2], [b0, b1, b2]]
             };
-            return Some(shading.fill_three(setup, channels, 0, |nodes| nodes.fit(setup.gradients), band));
+            return Some(shading.fill_three(setup, channels, 0, |plane| plane, band));
         }
         Some(draw_three(setup, shading, 0, tables, band))
     }
@@ -150,7 +150,7 @@ pub(crate) fn draw_three<C: Pixel>(
         let [[r0, g0, b0], [r1, g1, b1], [r2, g2, b2]] = reflections([a, b, c], setup.albedos, reflectance);
         [[r0, r1, r2], [g0, g1, g2], [b0, b1, b2]]
     };
-    shading.fill_three(setup, channels, raise, |nodes| nodes.fit(setup.gradients), band)
+    shading.fill_three(setup, channels, raise, |plane| plane, band)
 }
 
 /// Draws a triangle of one colour, under light without a hue that has these levels at the corners: each channel is a product of one walked level.
@@ -188,7 +188,7 @@ fn draw_seen<C: Pixel>(
     if C::GRAY || !reflectance.three_channels() {
         return Shading::fill_one(setup, || six(levels()[0]), tables, band);
     }
-    shading.fill_three(setup, || levels().map(six), 0, |nodes| ByColumn(nodes.fit(setup.gradients)), band)
+    shading.fill_three(setup, || levels().map(six), 0, ByColumn, band)
 }
 
 /// Draws a triangle that reaches so far that the light at each pixel is that of the point in space. Returns the number of its pixels in
@@ -203,7 +203,8 @@ fn draw_in_space<C: Pixel>(
     let (seen, reflectance) = (setup.in_space(())?, shading.reflectance);
     let channels = channels(corner_levels(setup, shading));
     if !C::GRAY && reflectance.three_channels() {
-        return Some(shading.fill_three(setup, || channels, 0, |nodes| seen.with(Slant::new(&nodes)), band));
+        let levels = || seen.with(Slant::new(&three_levels::<3, C>(channels, 0)));
+        return Some(setup.fill(levels, Rgb::new(reflectance.quarter()), band));
     }
     let patch = || seen.with(Slant::new(&indices::<3, C>(channels[0])));
     Some(if C::Ramps::CHECKERED {

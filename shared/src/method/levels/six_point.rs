@@ -4,7 +4,7 @@
 //! perspective. It is good for wide highlights or fine meshes. A highlight narrower than a triangle is flattened.
 
 use crate::{
-    interpolate::{by_column::ByColumn, field::Field},
+    interpolate::by_column::ByColumn,
     lighting::{albedo::Parts, material_tables::MaterialTables},
     method::{Facts, Loops, Method, RANGE, Shading, Style, TriangleSetup, VertexLight, channels, levels::gouraud, node::map_six, texture},
     pixel::Pixel,
@@ -77,7 +77,7 @@ impl Loops for SixPoint {
 /// Draws `setup` in three channels.
 #[inline(never)]
 fn draw_rgb<C: Pixel>(setup: &TriangleSetup<'_>, shading: &Shading<'_>, band: &mut Band<'_, C>) -> u32 {
-    shading.fill_three(setup, || levels(&setup.for_lighting(), shading), 0, |nodes| ByColumn(nodes.fit(setup.gradients)), band)
+    shading.fill_three(setup, || levels(&setup.for_lighting(), shading), 0, ByColumn, band)
 }
 
 /// N·L (Q2.30) and the highlight (unsigned Q0.16) of one constant light at the six nodes.
