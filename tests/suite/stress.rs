@@ -92,7 +92,7 @@ const BROKEN: [(&str, &str, [u32; 2], u32, bool); 13] = [
 ];
 
 /// Random cases that once broke a promise: family, seed and number.
-const CASES: [(&str, u64, u64); 8] = [
+const CASES: [(&str, u64, u64); 10] = [
     // Under three lights, each run of a transparent row stepped the walks of all lights.
     ("changes", 20_261_128_602, 1_425),
     // Under skies alone a glossy material has one hue. The oracle judged it in three channels.
@@ -109,6 +109,10 @@ const CASES: [(&str, u64, u64); 8] = [
     ("arithmetic", 99_001, 4_506),
     // Levels at six nodes of a texture were rounded to an eighth, and a light that is far beyond white magnified that.
     ("arithmetic", 32_001, 10_634),
+    // Under the sky alone one colour of `auto` follows from levels. The oracle took it from cosines.
+    ("arithmetic", 64_002, 12_912),
+    // The coordinates of a point that is seen far away have more bits than the fast fit of a plane.
+    ("arithmetic", 64_008, 595),
 ];
 
 #[test]

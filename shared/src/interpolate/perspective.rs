@@ -16,7 +16,7 @@ use crate::{
     arch::product::product,
     interpolate::{
         Patch, Walker, each_channel,
-        field::{Field, Nodes},
+        field::Nodes,
         plane::{LinearWalker, Plane},
     },
     math::{recip::recip, vector::map},
@@ -167,7 +167,7 @@ impl<S> Seen<S> {
     pub(crate) fn new(gradients: &Gradients, inv_depth: [i32; 3], pixels: u32, surface: S) -> Option<Self> {
         let [a, b, c] = map(inv_depth, |w| w.max(1) as u64);
         let reaches_far = a.max(b).max(c) * u64::from(pixels) > a.min(b).min(c) * REACH;
-        (!reaches_far).then(|| Self { numerators: Nodes::<3, 3, SHARE>::new(numerators(inv_depth), 0).fit(gradients), surface })
+        (!reaches_far).then(|| Self { numerators: Plane::fit_any(gradients, &numerators(inv_depth)), surface })
     }
 
     /// Replaces the field, on this triangle.

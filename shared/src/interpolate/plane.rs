@@ -4,7 +4,8 @@ use zerocopy::{FromBytes, Immutable, IntoBytes, KnownLayout};
 
 use crate::{
     interpolate::{Checkerboard, HALF_RANGE, Patch, Walker, each_channel},
-    setup::gradients::Gradients,
+    math::vector::map,
+    setup::gradients::{GUARD, Gradients},
 };
 
 /// A linear function `c + dx x + dy y` in each of `CH` channels, standing on one row.
@@ -62,6 +63,17 @@ impl<const CH: usize> Plane<CH> {
             }
         } else {
             each_channel::<CH>(|c| plane.0[c] = PlaneRow::fitted::<BITS>(gradients, &nodes[c], extra, bias[c]));
+        }
+        plane
+    }
+
+    /// [`Self::fit`] of nodes in any range, walked with the fraction bits that they have. It takes longer.
+    #[inline(never)]
+    pub(super) fn fit_any(gradients: &Gradients, nodes: &[[i32; 3]; CH]) -> Self {
+        let mut plane = Self::ZERO;
+        for (row, nodes) in plane.0.iter_mut().zip(nodes) {
+            let [c, dx, dy] = map(gradients.fine(*nodes), |number| (number.wrapping_add(1 << (GUARD - 1)) >> GUARD) as i32);
+            *row = PlaneRow { c: c.wrapping_sub(dx.wrapping_mul(gradients.column())), dx, dy };
         }
         plane
     }
