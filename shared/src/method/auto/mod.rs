@@ -67,7 +67,8 @@ pub struct Auto<const QUADRATICS: bool>;
 fn half_way(setup: &TriangleSetup<'_>, k: usize, floor: i32) -> i32 {
     let [a, b, c] = setup.corners;
     let [least, most] = extremes([a.light[k].max(floor), b.light[k].max(floor), c.light[k].max(floor)]);
-    (least + most) >> 1
+    // The sum of two cosines of 1 would not fit.
+    least + ((most - least) >> 1)
 }
 
 /// Levels by which a choice raises each channel, Q9.7. Where the table of colours can be interpolated, one level stands for all channels, and each
