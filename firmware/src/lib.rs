@@ -4,6 +4,10 @@
 #![no_std]
 
 pub mod budget;
+#[cfg(feature = "raspberry-pi")]
+#[cfg_attr(feature = "pico", path = "rp2040.rs")]
+#[cfg_attr(feature = "pico2", path = "rp2350.rs")]
+mod chip;
 mod failure;
 mod painter;
 mod picture;
@@ -19,13 +23,15 @@ mod stream;
 
 #[cfg(feature = "framebuffer")]
 pub mod framebuffer;
+#[cfg(feature = "raspberry-pi")]
+pub mod pico;
 #[cfg(feature = "styles")]
 pub mod register;
-#[cfg(feature = "pico")]
+#[cfg(feature = "raspberry-pi")]
 pub mod second_core;
 #[cfg(feature = "lm3s6965evb")]
 pub mod ssd0323;
-#[cfg(feature = "pico")]
+#[cfg(feature = "raspberry-pi")]
 pub mod st7789;
 
 pub use failure::Failure;

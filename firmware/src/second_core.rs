@@ -1,5 +1,6 @@
-//! The RP2040's second processor, which prepares one half of each frame and draws its lower part.
+//! The second processor of an RP2040 or RP2350, which prepares one half of each frame and draws its lower part.
 
+pub use crate::chip::STACK;
 use crate::{Display, Failure, Painter, painter::rows, stack::without_paint};
 use core::{
     cell::{Cell, RefCell},
@@ -19,9 +20,6 @@ use microphong::{
     Frame, FramePart, RenderError, Renderer, Stats,
     pixel::{PictureCrc, Pixel},
 };
-
-/// Bytes of its stack. Measured: the teapot by `auto` takes 8.8 KB; with colours at corners, `auto` takes 13 to 15 KB.
-pub const STACK: usize = if cfg!(feature = "vertex-colours") { 15 << 10 } else { 10 << 10 };
 
 /// Work for the second processor.
 struct Job(*mut (dyn FnMut() + Send));

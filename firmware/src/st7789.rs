@@ -1,6 +1,6 @@
-//! An ST7789 panel of 240x240 pixels on the RP2040's second serial port, fed by DMA.
+//! An ST7789 panel of 240x240 pixels on the second serial port of an RP2040 or RP2350, fed by DMA.
 
-use crate::{Display, Failure, budget::PICO, error_picture, painter::part};
+use crate::{Display, Failure, chip::BUDGET, error_picture, painter::part};
 use core::mem;
 use defmt_rtt as _;
 use embassy_rp::{
@@ -31,7 +31,7 @@ mod command {
     pub(super) const WRITE_MEMORY: u8 = 0x2C;
 }
 
-/// Half of the peripherals' clock, the fastest that the port can do.
+/// Half of the peripherals' clock, the fastest that the port can do, and what the panel is made for.
 pub const SPI_HZ: u32 = 62_500_000;
 
 /// The DMA channel that sends, as its registers count it.
@@ -78,7 +78,7 @@ impl St7789 {
         let Ok(device) = ExclusiveDevice::new(&mut self.bus, &mut self.select, Delay);
         let interface = SpiInterface::new(device, &mut self.data, &mut buffer);
         let builder = Builder::new(ST7789, interface)
-            .display_size(PICO.layout.width as u16, PICO.height as u16)
+            .display_size(BUDGET.layout.width as u16, BUDGET.height as u16)
             .invert_colors(ColorInversion::Inverted)
             .reset_pin(&mut self.reset);
         let Ok(mut panel) = builder.init(&mut Delay) else {
@@ -147,7 +147,7 @@ impl Display for St7789 {
     type Color = Rgb565Be;
 
     fn size(&self) -> Size {
-        Size::new(PICO.layout.width as u32, PICO.height as u32)
+        Size::new(BUDGET.layout.width as u32, BUDGET.height as u32)
     }
 
     fn now(&self) -> Option<u64> {

@@ -2,77 +2,10 @@
 #![no_std]
 #![no_main]
 
-#[cfg(not(feature = "one-core"))]
-use embassy_rp::multicore::Stack;
-use embassy_rp::{
-    bind_interrupts,
-    dma::{self, Channel},
-    gpio::{Level, Output},
-    peripherals::DMA_CH0,
-    spi::{self, Spi},
-    watchdog::{ResetReason, Watchdog},
-};
-use microphong::pixel::Rgb565Be;
-#[cfg(feature = "one-core")]
-use microphong_firmware::OneCore;
-#[cfg(not(feature = "one-core"))]
-use microphong_firmware::second_core::{STACK, SecondCore, TwoCores};
-use microphong_firmware::{
-    Failure,
-    budget::PICO,
-    run,
-    shaders::every,
-    st7789::{SIGN_OF_LIFE, SPI_HZ, St7789},
-    stop,
-};
-
-bind_interrupts!(struct Interrupts {
-    DMA_IRQ_0 => dma::InterruptHandler<DMA_CH0>;
-});
+use microphong_firmware::pico::{Memory, start};
 
 #[cortex_m_rt::entry]
 fn main() -> ! {
-    // Two processors draw one each, and one is sent.
-    static mut BANDS: [[Rgb565Be; PICO.layout.band()]; 3] = [[Rgb565Be::BLACK; PICO.layout.band()]; 3];
-    #[cfg(not(feature = "one-core"))]
-    static mut SECOND_STACK: Stack<STACK> = Stack::new();
-    static mut MEMORY: [u64; PICO.layout.words::<Rgb565Be>()] = [0; PICO.layout.words::<Rgb565Be>()];
-
-    let [sent, bands @ ..] = BANDS;
-    let pins = embassy_rp::init(Default::default());
-    let mut config = spi::Config::default();
-    config.frequency = SPI_HZ;
-    let mut display = St7789 {
-        bus: Spi::new_blocking_txonly(pins.SPI1, pins.PIN_10, pins.PIN_11, config),
-        channel: Channel::new(pins.DMA_CH0, Interrupts),
-        sent,
-        sending: None,
-        begun: false,
-        last: false,
-        select: Output::new(pins.PIN_9, Level::High),
-        data: Output::new(pins.PIN_8, Level::Low),
-        reset: Output::new(pins.PIN_12, Level::High),
-        backlight: Output::new(pins.PIN_13, Level::Low),
-        led: Output::new(pins.PIN_25, Level::Low),
-        watchdog: Watchdog::new(pins.WATCHDOG),
-        failure: None,
-    };
-    let hung = display.watchdog.reset_reason() == Some(ResetReason::TimedOut);
-    // Who looks at the program by a debug probe may take their time.
-    display.watchdog.pause_on_debug(true);
-    display.watchdog.start(SIGN_OF_LIFE);
-    if hung {
-        stop(&mut display, Failure::Hang);
-    }
-    display.start(None);
-    #[cfg(not(feature = "one-core"))]
-    let mut painter = TwoCores {
-        bands: bands.each_mut().map(|band| &mut band[..]),
-        second: SecondCore::start(pins.CORE1, SECOND_STACK),
-        share: 1 << 15,
-        earlier: 1 << 15,
-    };
-    #[cfg(feature = "one-core")]
-    let mut painter = OneCore { band: &mut bands[0] };
-    run(&mut display, &mut painter, &PICO.layout, MEMORY, every())
+    static mut MEMORY: Memory = Memory::NEW;
+    start(MEMORY)
 }

@@ -1,0 +1,11 @@
+//! Raspberry Pi Pico 2 (RP2350) with the common 1.3 inch ST7789 panel plugged on.
+#![no_std]
+#![no_main]
+
+use microphong_firmware::pico::{Memory, start};
+
+#[cortex_m_rt::entry]
+fn main() -> ! {
+    static mut MEMORY: Memory = Memory::NEW;
+    start(MEMORY)
+}
