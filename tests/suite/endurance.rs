@@ -67,7 +67,7 @@ fn ten_thousand_frames_use_up_nothing() -> Result {
     let second = second.ok_or("the second processor's stack is not where this test looks for it")?;
     let given: Vec<_> = given.into_iter().map(|(_, addresses)| offsets(addresses)).chain([stack.clone(), second.clone()]).collect();
 
-    let mut pico = Pico::new(&elf)?;
+    let mut pico = Pico::new(Board::Pico, &elf)?;
     let mut turn: Vec<Vec<u32>> = Vec::new();
     let mut early = Vec::new();
     for frame in 0..LATE {

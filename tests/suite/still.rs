@@ -17,7 +17,7 @@ const DRAWN: u64 = 200_000;
 fn checked(period: u16, frames: u16) -> Result<Pico> {
     let stream = verify::prepare(scene::load("dodecahedron")?.stream.as_bytes(), Shader::GOURAUD, frames)?;
     let stream = verify::with_header(&stream, |header| header.camera.period = period)?;
-    let mut pico = Pico::new(&Elf::read(&verify::build(Board::Pico, false)?)?.with_stream(&stream)?)?;
+    let mut pico = Pico::new(Board::Pico, &Elf::read(&verify::build(Board::Pico, false)?)?.with_stream(&stream)?)?;
     for _ in 0..frames {
         pico.next_picture()?;
     }

@@ -5,6 +5,7 @@ pub mod child;
 pub mod elf;
 pub mod example;
 mod log;
+mod panelled;
 mod parts;
 mod pico;
 mod pico2;
@@ -16,7 +17,8 @@ use anyhow::{Context, Result};
 use elf::Elf;
 pub use microphong_render::board::{Board, Format, budget};
 use microphong_render::shader::Shader;
-pub use pico::{Fault, FrameTime, Pico};
+pub use panelled::{FrameTime, Pico};
+pub use parts::peripherals::Fault;
 pub use qemu::{Blocks, INSTRUCTIONS_PER_TICK, check, clocked, stack, trace};
 use std::ops::Range;
 
@@ -80,7 +82,7 @@ impl Recording {
 /// When the program crashes, falls silent or drives its display wrongly.
 pub fn run(board: Board, elf: &Elf, until: Until) -> Result<Recording> {
     match board {
-        Board::Pico => pico::run(elf, until),
+        Board::Pico | Board::Pico2 => panelled::run(board, elf, until),
         _ => qemu::run(board, elf, until),
     }
 }
@@ -107,7 +109,7 @@ pub struct Executed {
 
 /// Changes a stream for [`watch`]: frames are drawn by this method, and the first one is watched.
 ///
-/// The Pico's frame is watched when it is drawn at full speed, which does not happen while its picture is shown already. So the stream has a second
+/// The frame of a Pico is watched when it is drawn at full speed, which does not happen while its picture is shown already. So the stream has a second
 /// frame, turned by so little that it takes as long.
 ///
 /// # Errors
@@ -115,7 +117,7 @@ pub struct Executed {
 pub fn watchable(board: Board, stream: &[u8], shader: Shader) -> Result<Vec<u8>> {
     match board {
         // What has tracks moves by itself.
-        Board::Pico => verify::with_header(&verify::prepare(stream, shader, 2)?, |header| {
+        Board::Pico | Board::Pico2 => verify::with_header(&verify::prepare(stream, shader, 2)?, |header| {
             if header.tracks == 0 {
                 header.camera.period = u16::MAX;
             }
@@ -125,13 +127,13 @@ pub fn watchable(board: Board, stream: &[u8], shader: Shader) -> Result<Vec<u8>>
 }
 
 /// Runs `elf`, whose stream must be [`watchable`], and passes each instruction of its first frame to `visit`. In QEMU these are instructions in
-/// `ranges`, without cycles. On the Pico these are all instructions, of a frame that follows another.
+/// `ranges`, without cycles. On a Pico these are all instructions, of a frame that follows another.
 ///
 /// # Errors
 /// When the program crashes, falls silent or drives its display wrongly.
 pub fn watch(board: Board, elf: &Elf, ranges: &[Range<u32>], visit: &mut dyn FnMut(Executed)) -> Result<Watched> {
     let (recording, time) = match board {
-        Board::Pico => pico::watch(elf, visit).map(|(recording, time)| (recording, Some(time)))?,
+        Board::Pico | Board::Pico2 => panelled::watch(board, elf, visit).map(|(recording, time)| (recording, Some(time)))?,
         _ => (trace(board, elf, ranges, Blocks::Whole, &mut |address| visit(Executed { core: 0, address, cycles: 0 }))?, None),
     };
     Ok(Watched { recording, time })

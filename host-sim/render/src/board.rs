@@ -14,6 +14,8 @@ use std::fmt;
 pub enum Board {
     /// Raspberry Pi Pico, ST7789 panel of 240x240 pixels.
     Pico,
+    /// Raspberry Pi Pico 2, the same panel.
+    Pico2,
     /// TI LM3S6965 evaluation board, OLED of 128x64 pixels with 16 greys.
     Lm3s6965evb,
     /// Arm MPS2 with a Cortex-M3, frame buffer of 320x240 pixels.
@@ -79,8 +81,8 @@ const FRAMEBUFFER: Facts = Facts {
 
 impl Board {
     /// All boards.
-    pub const ALL: [Self; 7] =
-        [Self::Pico, Self::Lm3s6965evb, Self::Mps2An385, Self::Mps2An386, Self::Mps2An500, Self::Mps2An505, Self::RiscvVirt];
+    pub const ALL: [Self; 8] =
+        [Self::Pico, Self::Pico2, Self::Lm3s6965evb, Self::Mps2An385, Self::Mps2An386, Self::Mps2An500, Self::Mps2An505, Self::RiscvVirt];
 
     const fn facts(self) -> Facts {
         match self {
@@ -93,6 +95,13 @@ impl Board {
                 format: Format::Rgb565Be,
                 memory: include_str!("../../../memory.x"),
                 ..FRAMEBUFFER
+            },
+            Self::Pico2 => Facts {
+                name: "pico2",
+                core: Core::CortexM33,
+                budget: budget::PICO2,
+                memory: include_str!("../../../firmware/boards/pico2.x"),
+                ..Self::Pico.facts()
             },
             Self::Lm3s6965evb => Facts {
                 name: "lm3s6965evb",

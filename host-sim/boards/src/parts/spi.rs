@@ -17,8 +17,9 @@ mod register {
 }
 
 /// Registers and queues of the port.
-#[derive(Default)]
 pub(crate) struct Spi {
+    /// Processor cycles in a cycle of the clock that drives the port.
+    pub(crate) clock: f64,
     control: [u32; 2],
     prescale: u32,
     interrupt_mask: u32,
@@ -26,17 +27,39 @@ pub(crate) struct Spi {
     transmit: VecDeque<u16>,
     received: VecDeque<u16>,
     /// When the word at the front of `transmit` has been sent.
-    done: Option<u64>,
+    done: Option<f64>,
     /// Cycles that sending took, of all words so far.
-    pub(crate) busy: u64,
+    busy: f64,
     /// The word on the wire never ends.
     pub(crate) hung: bool,
+}
+
+impl Default for Spi {
+    fn default() -> Self {
+        Self {
+            clock: 1.0,
+            control: [0; 2],
+            prescale: 0,
+            interrupt_mask: 0,
+            dma_control: 0,
+            transmit: VecDeque::new(),
+            received: VecDeque::new(),
+            done: None,
+            busy: 0.0,
+            hung: false,
+        }
+    }
 }
 
 impl Spi {
     /// Whether nothing is being sent.
     pub(crate) fn idle(&self) -> bool {
         self.done.is_none()
+    }
+
+    /// Cycles in which the port was sending, up to the last complete word.
+    pub(crate) fn busy(&self) -> u64 {
+        self.busy as u64
     }
 
     /// There is room for a word.
@@ -48,19 +71,19 @@ impl Spi {
     pub(crate) fn push(&mut self, word: u16, now: u64) {
         if self.ready() {
             self.transmit.push_back(word);
-            self.start(now);
+            self.start(now as f64);
         }
     }
 
     /// Cycles that one word takes.
-    fn duration(&self) -> u64 {
-        let divisor = u64::from(self.prescale.max(2)) * u64::from((self.control[0] >> 8 & 0xFF) + 1);
-        let bits = u64::from((self.control[0] & 0xF) + 1);
-        divisor * bits
+    fn duration(&self) -> f64 {
+        let divisor = self.prescale.max(2) * ((self.control[0] >> 8 & 0xFF) + 1);
+        let bits = (self.control[0] & 0xF) + 1;
+        f64::from(divisor * bits) * self.clock
     }
 
     /// Puts the next word on the wire if the wire is free.
-    fn start(&mut self, now: u64) {
+    fn start(&mut self, now: f64) {
         if self.done.is_none() && !self.transmit.is_empty() {
             self.done = Some(now + self.duration());
         }
@@ -68,7 +91,7 @@ impl Spi {
 
     /// The word whose last bit was sent at or before `now`, and when that was.
     pub(crate) fn sent(&mut self, now: u64) -> Option<(u16, u64)> {
-        let done = self.done.filter(|&done| done <= now && !self.hung)?;
+        let done = self.done.filter(|&done| done <= now as f64 && !self.hung)?;
         self.done = None;
         let word = self.transmit.pop_front()?;
         self.busy += self.duration();
@@ -77,7 +100,7 @@ impl Spi {
             self.received.push_back(0);
         }
         self.start(done);
-        Some((word, done))
+        Some((word, done as u64))
     }
 
     pub(crate) fn read(&mut self, offset: u32) -> u32 {

@@ -1,11 +1,14 @@
 //! Processor and bus, from reset.
 
-use super::{Board, Executed, Fault, bus::Bus, cycles};
+use super::{bus::Bus, cycles};
 use crate::{
+    Board, Executed,
     elf::Elf,
     parts::{
         flash::{FLASH, flashed, word},
+        machine,
         panel::Panel,
+        peripherals::Peripherals,
         rtt::Rtt,
     },
 };
@@ -15,9 +18,6 @@ use rp2040_emu::{Bus as Chip, core::CortexM0Plus, memory::SRAM_SIZE};
 const FLASH_SIZE: usize = 2 << 20;
 /// Bytes of the second stage of the boot loader, its checksum included; the vector table follows.
 const BOOT2: usize = 0x100;
-
-/// Number of instructions between reads of the log. The log has room for more than these can write.
-const LOG_INTERVAL: u64 = 1024;
 
 /// A processor of the chip.
 struct Core {
@@ -30,17 +30,16 @@ struct Core {
 
 /// An RP2040. The processor that is behind the other runs next, so that each soon reads what the other writes. Waiting for a bank of memory that the
 /// other uses is not modelled.
-pub(super) struct Machine {
+pub(crate) struct Machine {
     flash: Vec<u8>,
     cores: [Core; 2],
     bus: Bus,
     rtt: Rtt,
-    steps: u64,
 }
 
 impl Machine {
     /// Flashes `elf` and does what the mask ROM does: checks the boot loader's second stage and goes to the program.
-    pub(super) fn new(elf: &Elf) -> Result<Self> {
+    pub(crate) fn new(elf: &Elf) -> Result<Self> {
         let flash = flashed(elf, FLASH_SIZE)?;
         let (stored, computed) = (word(&flash, BOOT2 - 4), boot_checksum(&flash[..BOOT2 - 4]));
         ensure!(
@@ -50,44 +49,7 @@ impl Machine {
 
         let (cores, chip) = booted(&flash, 0);
         let (rtt, _) = elf.symbol("_SEGGER_RTT")?;
-        Ok(Self { flash, cores, bus: Bus::new(chip, Panel::new(Board::Pico.size())), rtt: Rtt(rtt), steps: 0 })
-    }
-
-    /// Executes one instruction of the processor that is behind.
-    pub(super) fn step(&mut self) -> Result<Executed> {
-        self.launch();
-        let [first, second] = &self.cores;
-        let number = usize::from(second.runs && !self.bus.chip.wfe_waiting[1] && second.cycle < first.cycle);
-        self.bus.chip.set_active_core(number);
-        let Core { core, cycle, .. } = &mut self.cores[number];
-        let pc = core.regs.pc();
-        let memory = &self.bus.chip.memory;
-        // The core fetches it again; this is to look up its time.
-        let instruction = if pc >> 28 == 1 { memory.xip_read16(pc & 0xFF_FFFF) } else { memory.sram_read16(pc & 0xFF_FFFF) };
-        self.bus.fast = false;
-        self.bus.wait = 0;
-        self.bus.cycle = *cycle;
-        core.step(&mut self.bus);
-        self.steps += 1;
-        // Time goes on while the first processor waits for an event; here it just looks again. The second one sleeps.
-        self.bus.chip.wfe_waiting[0] = false;
-        let taken = core.regs.pc() != pc.wrapping_add(2);
-        let cycles = cycles::of(instruction, taken, self.bus.fast, self.bus.wait);
-        *cycle += cycles;
-        ensure!(
-            !core.is_in_hardfault(),
-            "the firmware crashed (HardFault of processor {number}) at {pc:#010x}; look it up with `addr2line -e ELF {pc:#x}`"
-        );
-        self.bus.cycle = self.cycle();
-        // Nobody reads this list, which would grow for ever.
-        self.bus.chip.pending_cache_invalidations.clear();
-        self.bus.tick();
-        if self.bus.hangs() {
-            let (cores, chip) = booted(&self.flash, self.cycle());
-            self.cores = cores;
-            self.bus.reset(chip);
-        }
-        Ok(Executed { core: number, address: pc, cycles })
+        Ok(Self { flash, cores, bus: Bus::new(chip, Panel::new(Board::Pico.size())), rtt: Rtt(rtt) })
     }
 
     /// Lets the second processor begin or go on, if it is time.
@@ -112,61 +74,91 @@ impl Machine {
         }
     }
 
-    /// Whether it is time to take the log.
-    pub(super) fn log_is_due(&self) -> bool {
-        self.steps.is_multiple_of(LOG_INTERVAL)
-    }
-
-    pub(super) fn take_log(&mut self) -> Vec<u8> {
-        self.rtt.drain(&mut self.bus.chip)
-    }
-
-    pub(super) fn pc(&self) -> u32 {
-        self.cores[0].core.regs.pc()
-    }
-
-    /// The cycle that both processors have reached.
-    pub(super) fn cycle(&self) -> u64 {
-        let [first, second] = &self.cores;
-        if second.runs && !self.bus.chip.wfe_waiting[1] { first.cycle.min(second.cycle) } else { first.cycle }
-    }
-
-    /// Cycles in which bits went over the wire to the panel, up to the last complete byte.
-    pub(super) fn wire(&self) -> u64 {
-        self.bus.wire()
-    }
-
-    pub(super) fn led(&self) -> bool {
-        self.bus.led()
-    }
-
     /// The picture on the OLED, which must have been driven well.
     pub(super) fn oled(&self) -> Result<Vec<u32>> {
         self.bus.oled()
     }
+}
 
-    /// Whether the panel shows a whole picture, and was driven well.
-    pub(super) fn check_panel(&self) -> Result<()> {
-        self.bus.panel.check()
+impl machine::Machine for Machine {
+    /// Executes one instruction of the processor that is behind.
+    fn step(&mut self) -> Result<Executed> {
+        self.launch();
+        let [first, second] = &self.cores;
+        let number = usize::from(second.runs && !self.bus.chip.wfe_waiting[1] && second.cycle < first.cycle);
+        self.bus.chip.set_active_core(number);
+        let Core { core, cycle, .. } = &mut self.cores[number];
+        let pc = core.regs.pc();
+        let memory = &self.bus.chip.memory;
+        // The core fetches it again; this is to look up its time.
+        let instruction = if pc >> 28 == 1 { memory.xip_read16(pc & 0xFF_FFFF) } else { memory.sram_read16(pc & 0xFF_FFFF) };
+        self.bus.fast = false;
+        self.bus.wait = 0;
+        self.bus.cycle = *cycle;
+        core.step(&mut self.bus);
+        // Time goes on while the first processor waits for an event; here it just looks again. The second one sleeps.
+        self.bus.chip.wfe_waiting[0] = false;
+        let taken = core.regs.pc() != pc.wrapping_add(2);
+        let cycles = cycles::of(instruction, taken, self.bus.fast, self.bus.wait);
+        *cycle += cycles;
+        ensure!(
+            !core.is_in_hardfault(),
+            "the firmware crashed (HardFault of processor {number}) at {pc:#010x}; look it up with `addr2line -e ELF {pc:#x}`"
+        );
+        self.bus.cycle = machine::Machine::cycle(self);
+        // Nobody reads this list, which would grow for ever.
+        self.bus.chip.pending_cache_invalidations.clear();
+        self.bus.tick();
+        if self.bus.hangs() {
+            let (cores, chip) = booted(&self.flash, self.bus.cycle);
+            self.cores = cores;
+            self.bus.reset(chip);
+        }
+        Ok(Executed { core: number, address: pc, cycles })
     }
 
-    pub(super) fn inject(&mut self, fault: Fault) {
-        self.bus.inject(fault);
+    fn take_log(&mut self) -> Vec<u8> {
+        self.rtt.drain(&mut self.bus.chip)
     }
 
-    /// Nobody speaks to the panel.
-    pub(super) fn quiet(&self) -> bool {
-        self.bus.quiet()
+    fn cycle(&self) -> u64 {
+        let [first, second] = &self.cores;
+        if second.runs && !self.bus.chip.wfe_waiting[1] { first.cycle.min(second.cycle) } else { first.cycle }
     }
 
-    /// The contents of all RAM.
-    pub(super) fn ram(&self) -> Vec<u8> {
+    fn picture(&self) -> Result<Vec<u32>> {
+        machine::Panelled::check(self)?;
+        Ok(self.bus.peripherals.panel.picture())
+    }
+}
+
+impl machine::Panelled for Machine {
+    fn pc(&self) -> u32 {
+        self.cores[0].core.regs.pc()
+    }
+
+    fn check(&self) -> Result<()> {
+        self.bus.peripherals.panel.check()
+    }
+
+    fn peripherals(&self) -> &Peripherals {
+        &self.bus.peripherals
+    }
+
+    fn peripherals_mut(&mut self) -> &mut Peripherals {
+        &mut self.bus.peripherals
+    }
+
+    fn led(&self) -> bool {
+        Peripherals::led(&self.bus.chip)
+    }
+
+    fn quiet(&self) -> bool {
+        self.bus.peripherals.quiet(&self.bus.chip)
+    }
+
+    fn ram(&self) -> Vec<u8> {
         (0..SRAM_SIZE as u32).map(|offset| self.bus.chip.memory.sram_read8(offset)).collect()
-    }
-
-    /// The picture on the panel.
-    pub(super) fn picture(&self) -> Vec<u32> {
-        self.bus.panel.picture()
     }
 }
 

@@ -64,6 +64,17 @@ impl Missing {
     }
 }
 
+/// Whether the instruction is `LDREX`, `STREX` or one of their narrow forms. The monitor of the crate does not see what the other processor writes.
+pub(super) fn is_exclusive([first, second]: [u16; 2]) -> bool {
+    match first & 0xFFF0 {
+        0xE850 => true,
+        // With this register it is `TT`.
+        0xE840 => second >> 12 != 0xF,
+        0xE8C0 | 0xE8D0 => matches!(second & 0xFF0, 0xF40 | 0xF50),
+        _ => false,
+    }
+}
+
 /// Executes `instruction`, the next one of the processor, if the crate must not, and returns its cycles.
 ///
 /// # Errors
@@ -92,23 +103,24 @@ pub(super) fn execute<B: CoreBus>(core: &mut CortexM33, bus: &mut B, instruction
 
 impl Missing {
     fn execute<B: CoreBus>(self, core: &mut CortexM33, bus: &mut B) -> Result<u64> {
+        let number = core.id();
         match self {
             Self::Exclusive => bail!("an exclusive access at {:#010x} that also orders others is not modelled", core.regs.pc()),
             Self::Load { width, to, address } => {
                 let address = aligned(core.regs.r[address], width)?;
                 core.regs.r[to] = match width {
-                    1 => bus.read8(address, 0).into(),
-                    2 => bus.read16(address, 0).into(),
-                    _ => bus.read32(address, 0),
+                    1 => bus.read8(address, number).into(),
+                    2 => bus.read16(address, number).into(),
+                    _ => bus.read32(address, number),
                 };
                 Ok(2)
             }
             Self::Store { width, from, address } => {
                 let (address, value) = (aligned(core.regs.r[address], width)?, core.regs.r[from]);
                 match width {
-                    1 => bus.write8(address, value as u8, 0),
-                    2 => bus.write16(address, value as u16, 0),
-                    _ => bus.write32(address, value, 0),
+                    1 => bus.write8(address, value as u8, number),
+                    2 => bus.write16(address, value as u16, number),
+                    _ => bus.write32(address, value, number),
                 }
                 Ok(2)
             }
@@ -139,9 +151,9 @@ impl Missing {
                 let start = if is_push { stack.wrapping_sub(bytes) } else { stack };
                 for (register, address) in (first..first + count).zip((start..).step_by(4)) {
                     if is_push {
-                        bus.write32(address, core.regs.s[register].to_bits(), 0);
+                        bus.write32(address, core.regs.s[register].to_bits(), number);
                     } else {
-                        core.regs.s[register] = f32::from_bits(bus.read32(address, 0));
+                        core.regs.s[register] = f32::from_bits(bus.read32(address, number));
                     }
                 }
                 core.regs.r[13] = if is_push { start } else { stack.wrapping_add(bytes) };
@@ -258,6 +270,18 @@ mod tests {
         // ldaex, ldaexb, stlex, stlexh
         for instruction in [[0xE8D2, 0x1FEF], [0xE8D2, 0x1FCF], [0xE8C2, 0x1FE3], [0xE8C2, 0x1FD3]] {
             assert!(refusal(&mut core, &mut bus, instruction).contains("exclusive"));
+        }
+    }
+
+    #[test]
+    fn exclusive_accesses_are_known() {
+        // ldrex r1, [r2]; strex r3, r1, [r2]; ldrexb r1, [r2]; ldrexh r1, [r2]; strexb r3, r1, [r2]; strexh r3, r1, [r2]
+        for instruction in [[0xE852, 0x1F00], [0xE842, 0x1300], [0xE8D2, 0x1F4F], [0xE8D2, 0x1F5F], [0xE8C2, 0x1F43], [0xE8C2, 0x1F53]] {
+            assert!(is_exclusive(instruction), "{instruction:04x?}");
+        }
+        // tt r1, [r2]; tbb [r1, r2]; tbh [r1, r2, lsl #1]; lda r1, [r2]; strd r1, r3, [r2]
+        for instruction in [[0xE842, 0xF100], [0xE8D1, 0xF002], [0xE8D1, 0xF012], [0xE8D2, 0x1FAF], [0xE9C2, 0x1300]] {
+            assert!(!is_exclusive(instruction), "{instruction:04x?}");
         }
     }
 

@@ -1,9 +1,10 @@
 //! The Pico 2: an RP2350 with an ST7789 panel, emulated down to the bytes on the panel's wires.
 //!
-//! The first Cortex-M33 and most of the chip come from the crate `rp2350-emu`. Serial port, timer and panel are ours, and so are instructions that the
-//! crate lacks. Neither DMA nor the second processor reaches the panel. The crate counts cycles roughly, so times are approximate.
+//! The processors and most of the chip come from the crate `rp2350-emu`. Serial port, DMA, timer, watchdog and panel are ours, and so are instructions
+//! that the crate lacks. The crate counts cycles roughly, so times are approximate.
 
 mod bus;
+mod launch;
 mod machine;
 mod missing;
 mod timer;

@@ -1,7 +1,6 @@
 //! The timer, which counts microseconds of the processor's cycles.
 
-/// Cycles of a microsecond at the processor's usual 150 MHz.
-const MICROSECOND: u64 = 150;
+use super::bus::MICROSECOND;
 
 /// Offsets of registers.
 mod register {
@@ -28,7 +27,7 @@ impl Timer {
     }
 
     pub(super) fn read(&mut self, offset: u32, now: u64) -> u32 {
-        let count = now / MICROSECOND;
+        let count = now / u64::from(MICROSECOND);
         match offset {
             register::HIGH => (count >> 32) as u32,
             register::LOW => count as u32,

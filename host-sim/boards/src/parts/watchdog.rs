@@ -8,18 +8,18 @@ mod register {
 }
 
 /// Bytes of registers.
-pub(super) const SIZE: u32 = 0xC;
+pub(crate) const SIZE: u32 = 0xC;
 
 const ENABLE: u32 = 1 << 30;
-/// The count has 24 bits and runs down by two in a microsecond (erratum RP2040-E1).
+/// The count has 24 bits.
 const COUNT: u32 = 0xFF_FFFF;
-const CYCLES_PER_COUNT: f64 = 125.0 / 2.0;
 /// The reason of the last reset: time was over.
 const TIME_OUT: u32 = 1;
 
 /// Registers, and the cycle in which time is over.
-#[derive(Default)]
-pub(super) struct Watchdog {
+pub(crate) struct Watchdog {
+    /// Processor cycles in which the count runs down by one.
+    cycles: f64,
     control: u32,
     count: u32,
     reason: u32,
@@ -27,17 +27,21 @@ pub(super) struct Watchdog {
 }
 
 impl Watchdog {
+    pub(crate) fn new(cycles: f64) -> Self {
+        Self { cycles, control: 0, count: 0, reason: 0, deadline: None }
+    }
+
     /// The watchdog after it has restarted the chip.
-    pub(super) fn after_reset() -> Self {
-        Self { reason: TIME_OUT, ..Self::default() }
+    pub(crate) fn restart(&mut self) {
+        *self = Self { reason: TIME_OUT, ..Self::new(self.cycles) };
     }
 
     /// Time is over.
-    pub(super) fn expired(&self, now: u64) -> bool {
+    pub(crate) fn expired(&self, now: u64) -> bool {
         self.deadline.is_some_and(|deadline| deadline <= now)
     }
 
-    pub(super) fn read(&self, offset: u32) -> u32 {
+    pub(crate) fn read(&self, offset: u32) -> u32 {
         match offset {
             register::CONTROL => self.control,
             register::REASON => self.reason,
@@ -45,13 +49,13 @@ impl Watchdog {
         }
     }
 
-    pub(super) fn write(&mut self, offset: u32, value: u32, now: u64) {
+    pub(crate) fn write(&mut self, offset: u32, value: u32, now: u64) {
         match offset {
             register::CONTROL => self.control = value & !COUNT,
             register::LOAD => self.count = value & COUNT,
             _ => return,
         }
-        let end = now + (f64::from(self.count) * CYCLES_PER_COUNT) as u64;
+        let end = now + (f64::from(self.count) * self.cycles) as u64;
         self.deadline = (self.control & ENABLE != 0).then_some(end);
     }
 }
