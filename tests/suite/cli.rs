@@ -1081,8 +1081,8 @@ fn convert_refuses_what_a_board_would_refuse() {
             }
         }
     }
-    // Refused by the Pico 8 of 17, by the smallest board 15, by each of the five others 3.
-    assert_eq!((taken, refused), (81, 38));
+    // Refused by the Pico 8 of 17, by the smallest board 15, by each of the six others 3.
+    assert_eq!((taken, refused), (95, 41));
     place.fails(&["convert", "m13.obj", "--board", "pico", "-o", "no.tri"], 1, &["13 materials", "room for 12", "--colour"]);
     place.succeeds(&["convert", "m13.obj", "--board", "pico", "--colour", "ff8000"]);
     place.fails(&["convert", "glossy5.obj", "--board", "pico", "-o", "no.tri"], 1, &["5 kinds of highlights", "room for 4", "gouraud"]);

@@ -222,6 +222,11 @@ fn pico() -> Result {
 }
 
 #[test]
+fn pico2() -> Result {
+    board(Board::Pico2)
+}
+
+#[test]
 fn lm3s6965evb() -> Result {
     board(Board::Lm3s6965evb)
 }

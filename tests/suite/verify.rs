@@ -25,7 +25,7 @@ type Result<T = ()> = std::result::Result<T, Box<dyn Error>>;
 /// The first frame, and one that follows another: rows that were background and still are are not sent again.
 const FRAMES: u16 = 2;
 /// Most RAM that variables and stack may take together with the teapot.
-const RAM: [(Board, u64); 2] = [(Board::Pico, 240 << 10), (Board::Lm3s6965evb, 64 << 10)];
+const RAM: [(Board, u64); 3] = [(Board::Pico, 240 << 10), (Board::Pico2, 420 << 10), (Board::Lm3s6965evb, 64 << 10)];
 
 /// Boards whose smooth outlines are compared. The others draw them by the same program for another processor, which takes long to compile.
 const SMOOTH: [Board; 2] = [Board::Mps2An385, Board::Mps2An386];
@@ -312,6 +312,7 @@ macro_rules! boards {
 
 boards! {
     pico: Board::Pico;
+    pico2: Board::Pico2;
     lm3s6965evb: Board::Lm3s6965evb;
     mps2_an385: Board::Mps2An385;
     mps2_an386: Board::Mps2An386;

@@ -35,9 +35,6 @@ use stage::Meter;
 pub use stage::Stages;
 use std::path::PathBuf;
 
-/// Cycles of the Pico in a second.
-pub const PICO_HZ: f64 = 125e6;
-
 /// A board's firmware, ready to be measured with any scene and method.
 #[derive(Debug)]
 struct Firmware {
@@ -183,12 +180,12 @@ impl Firmware {
         let log = &watched.recording;
         let (instructions, pixels) = (tally.instructions.drawing(), log.figure("pixels")?);
         let flash = self.graph.flash(shader)?;
-        let timing = watched.time.map(|time| Timing {
+        let timing = watched.time.zip(processor.clock()).map(|(time, clock)| Timing {
             frame_cycles: time.all,
             render_cycles: tally.cycles.drawing() + tally.cycles.clear,
             wire_cycles: time.wire,
             idle_cycles: tally.idle,
-            frames_per_second: rounded(PICO_HZ / time.all.max(1) as f64, 10.0),
+            frames_per_second: rounded(clock / time.all.max(1) as f64, 10.0),
         });
         Ok(Measurement {
             board: processor,

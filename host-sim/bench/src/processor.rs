@@ -17,14 +17,16 @@ pub enum Processor {
     RiscV,
     /// On the board `pico`.
     CortexM0Plus,
+    /// Two Cortex-M33 on the board `pico2`.
+    Rp2350,
     /// The host's.
     X86_64,
 }
 
 impl Processor {
     /// All processors that can be measured.
-    pub const ALL: [Self; 7] =
-        [Self::CortexM3, Self::CortexM4F, Self::CortexM7, Self::CortexM33, Self::RiscV, Self::CortexM0Plus, Self::X86_64];
+    pub const ALL: [Self; 8] =
+        [Self::CortexM3, Self::CortexM4F, Self::CortexM7, Self::CortexM33, Self::RiscV, Self::CortexM0Plus, Self::Rp2350, Self::X86_64];
 
     /// The processor's name.
     #[must_use]
@@ -36,6 +38,7 @@ impl Processor {
             Self::CortexM33 => "cortex-m33",
             Self::RiscV => "risc-v",
             Self::CortexM0Plus => "cortex-m0plus",
+            Self::Rp2350 => "rp2350",
             Self::X86_64 => "x86-64",
         }
     }
@@ -50,7 +53,18 @@ impl Processor {
             Self::CortexM33 => Some(Board::Mps2An505),
             Self::RiscV => Some(Board::RiscvVirt),
             Self::CortexM0Plus => Some(Board::Pico),
+            Self::Rp2350 => Some(Board::Pico2),
             Self::X86_64 => None,
+        }
+    }
+
+    /// Its cycles in a second, where time is modelled.
+    #[must_use]
+    pub const fn clock(self) -> Option<f64> {
+        match self {
+            Self::CortexM0Plus => Some(125e6),
+            Self::Rp2350 => Some(150e6),
+            _ => None,
         }
     }
 

@@ -10,7 +10,7 @@ use anyhow::Result;
 use microphong::{format::ErrorBudget, renderer::check};
 use microphong_sim::{
     bench::{
-        Bench, Measurement, PICO_HZ, Processor, Timing, baseline, board_styles,
+        Bench, Measurement, Processor, Timing, baseline, board_styles,
         callgrind::Counters,
         growth::{SHADERS, Sweep},
         page::Page,
@@ -30,7 +30,7 @@ use std::path::{Path, PathBuf};
 /// Count the instructions that a processor needs for one frame, by stage, and measure the error of the frame
 ///
 /// The counts are exact: an emulated board runs its firmware, or callgrind runs the code on this computer, and every instruction is counted.
-/// Instructions are not cycles. The cycles and times of the Pico are approximate.
+/// Instructions are not cycles. Cycles and times of the Pico and the Pico 2 are approximate.
 #[derive(clap::Args)]
 #[command(after_help = EXAMPLES)]
 pub(crate) struct Arguments {
@@ -418,10 +418,9 @@ fn text(m: &Measurement) -> Result<()> {
         let [ram, flash, own, whole] = [ram, flash, own, whole].map(report::grouped);
         report::line(&format!("  {ram} bytes of RAM, {flash} ({own}) of flash, {whole} with all methods"))?;
     }
-    if let (Some(cycles), Some(t)) = (m.cycles, m.timing) {
+    if let (Some(cycles), Some(t), Some(clock)) = (m.cycles, m.timing, m.board.clock()) {
         let Timing { frame_cycles, render_cycles, wire_cycles, idle_cycles, frames_per_second } = t;
-        let [frame, render, wire, idle] =
-            [frame_cycles, render_cycles, wire_cycles, idle_cycles].map(|cycles| cycles as f64 / PICO_HZ * 1e3);
+        let [frame, render, wire, idle] = [frame_cycles, render_cycles, wire_cycles, idle_cycles].map(|cycles| cycles as f64 / clock * 1e3);
         report::line(&format!(
             "  about {} cycles; frame {frame:.2} ms, render {render:.2}, wire {wire:.2}, idle {idle:.2}: {frames_per_second} frames/s",
             report::grouped(cycles)
