@@ -5,8 +5,8 @@
 //!
 //! Ambient and diffuse light is multiplied by the texel, and highlights are added. So methods that interpolate levels interpolate both apart.
 //!
-//! `flat`, `gouraud`, and `auto` where it interpolates between corners draw by loops of the pixel format that are here. Under directional lights `phong`
-//! has loops for colours that change from pixel to pixel. All else goes through the general loop.
+//! `flat`, `gouraud`, `six-point`, and `auto` where it interpolates between corners draw by loops of the pixel format that are here. Under directional
+//! lights `phong` has loops for colours that change from pixel to pixel. All else goes through the general loop.
 
 use crate::{
     arch::product::by_fraction,
@@ -219,8 +219,8 @@ impl IntensityShader<(([u32; 3], [u32; 3]), Colour)> for OnTexture<'_, Apart> {
 }
 
 /// Draws a triangle with a texture by a loop of its pixel format: `parts` of light at its nodes, which are interpolated, and a place by a plane or a
-/// quadratic. Three nodes are the corners. Six nodes are those of a quadratic on the screen. `None` if the general loop has to draw it: under very bright
-/// light, and where a quadratic on the screen is too far off for the place, or for light between the corners.
+/// quadratic or at the point that is seen at each pixel. Three nodes are the corners. Six nodes are those of a quadratic on the screen. `None` if the
+/// general loop has to draw it: under very bright light, and where a triangle reaches too far for words.
 #[inline(never)]
 pub(crate) fn fill<C: Pixel, const N: usize>(
     setup: &TriangleSetup<'_>,
