@@ -6,7 +6,7 @@
 //! numerator shrink with w^d, and its precision with them. So the three linear numerators of the barycentric coordinates are walked
 //! instead, whatever is interpolated, and the polynomial is evaluated at the pixel.
 //!
-//! Loops of a pixel format walk them in words ([`Seen`]), and everything else in long words.
+//! Loops of a pixel format walk them in words (`Seen`), and everything else in long words.
 //!
 //! Cost: 3 additions a step; at each pixel that is seen a reciprocal, 2 products, and Lagrange's weights of the
 //! nodes: none for planes, 6 products for quadratics, and then a product per node and channel.
