@@ -25,7 +25,7 @@ pub const PICO: Budget = Budget {
         .objects(12)
         .active_triangles(113),
 };
-/// The same panel, with room for twice as much: all of it stays within 420 KiB of the 520 that the RP2350 has.
+/// Sizes for the same panel with twice the room: all memory stays within 420 KiB of the 520 that the RP2350 has.
 pub const PICO2: Budget =
     Budget { layout: PICO.layout.vertices(3780).triangles(7552).materials(24).highlight_tables(8).objects(24), ..PICO };
 /// OLED; 64 KiB of RAM in all, of which the most demanding streams of the tests take up to 8.6 KB of stack.

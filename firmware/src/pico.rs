@@ -32,23 +32,29 @@ bind_interrupts!(struct Interrupts {
 pub struct Memory {
     /// Two processors draw one each, and one is sent.
     bands: [[Rgb565Be; BUDGET.layout.band()]; 3],
-    #[cfg(not(feature = "one-core"))]
-    second_stack: Stack<STACK>,
     renderer: [u64; BUDGET.layout.words::<Rgb565Be>()],
 }
 
 impl Memory {
     /// Nothing but zeros, which take no flash.
-    pub const NEW: Self = Self {
-        bands: [[Rgb565Be::BLACK; BUDGET.layout.band()]; 3],
+    pub const NEW: Self = Self { bands: [[Rgb565Be::BLACK; BUDGET.layout.band()]; 3], renderer: [0; BUDGET.layout.words::<Rgb565Be>()] };
+}
+
+/// Stack of the second processor, if it draws.
+pub struct SecondStack(#[cfg(not(feature = "one-core"))] Stack<STACK>);
+
+impl SecondStack {
+    /// An empty stack.
+    pub const NEW: Self = Self(
         #[cfg(not(feature = "one-core"))]
-        second_stack: Stack::new(),
-        renderer: [0; BUDGET.layout.words::<Rgb565Be>()],
-    };
+        Stack::new(),
+    );
 }
 
 /// Draws the stream in flash. Call it first of all, and once.
-pub fn start(memory: &'static mut Memory) -> ! {
+pub fn start(memory: &'static mut Memory, second_stack: &'static mut SecondStack) -> ! {
+    #[cfg(feature = "one-core")]
+    let SecondStack() = second_stack;
     let [sent, bands @ ..] = &mut memory.bands;
     let pins = embassy_rp::init(clocks());
     let mut config = spi::Config::default();
@@ -79,7 +85,7 @@ pub fn start(memory: &'static mut Memory) -> ! {
     #[cfg(not(feature = "one-core"))]
     let mut painter = TwoCores {
         bands: bands.each_mut().map(|band| &mut band[..]),
-        second: SecondCore::start(pins.CORE1, &mut memory.second_stack),
+        second: SecondCore::start(pins.CORE1, &mut second_stack.0),
         share: 1 << 15,
         earlier: 1 << 15,
     };

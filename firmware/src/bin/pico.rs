@@ -2,10 +2,11 @@
 #![no_std]
 #![no_main]
 
-use microphong_firmware::pico::{Memory, start};
+use microphong_firmware::pico::{Memory, SecondStack, start};
 
 #[cortex_m_rt::entry]
 fn main() -> ! {
     static mut MEMORY: Memory = Memory::NEW;
-    start(MEMORY)
+    static mut SECOND_STACK: SecondStack = SecondStack::NEW;
+    start(MEMORY, SECOND_STACK)
 }

@@ -5,8 +5,8 @@
 
 use crate::{
     interpolate::{
-        Constant, Patch, Walker,
-        perspective::{Point, SHARE, Surface},
+        Constant, Patch, Walker, each_channel,
+        perspective::{COARSER, Point, SHARE, Slant, Surface},
         plane::Plane,
         quadric::Quadric,
     },
@@ -139,6 +139,22 @@ impl<const N: usize, const CH: usize, const BITS: u32> Nodes<N, CH, BITS> {
             *value += sum >> SHARE.saturating_sub(self.extra);
         }
         values
+    }
+}
+
+impl<const CH: usize, const BITS: u32> Nodes<3, CH, BITS> {
+    /// The plane through the nodes, for loops. Domain: the range of the nodes and the fraction bits that they are walked with have 31 bits together. Error:
+    /// 2^[`COARSER`] units of a walked value.
+    #[inline(always)]
+    pub(crate) fn slant(&self) -> Slant<CH> {
+        let left = self.extra + (32 - SHARE) - COARSER;
+        let mut plane = Slant { base: self.bias, along: [[0; 2]; CH] };
+        each_channel::<CH>(|channel| {
+            let [a, b, c] = self.values[channel];
+            plane.base[channel] = plane.base[channel].wrapping_add(a << self.extra);
+            plane.along[channel] = [(b - a) << left, (c - a) << left];
+        });
+        plane
     }
 }
 

@@ -16,7 +16,6 @@ use crate::{
     arch::product::product,
     interpolate::{
         Patch, Walker, each_channel,
-        field::Nodes,
         plane::{LinearWalker, Plane},
     },
     math::{recip::recip, vector::map},
@@ -207,30 +206,14 @@ impl<S: Surface> Patch for Seen<S> {
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct Slant<const CH: usize> {
     /// The value at corner 0.
-    base: [i32; CH],
+    pub(super) base: [i32; CH],
     /// What corners 1 and 2 have more, 2^[`COARSER`] times as coarse, and so far to the left that the upper word of a product with a coordinate is the
     /// share of it.
-    along: [[i32; 2]; CH],
+    pub(super) along: [[i32; 2]; CH],
 }
 
 /// Fraction bits that a share lacks, so that products fit.
-const COARSER: u32 = 3;
-
-impl<const CH: usize> Slant<CH> {
-    /// The plane through `nodes`. Domain: their range and the fraction bits that they are walked with have 31 bits together. Error: 2^[`COARSER`] units of
-    /// a walked value.
-    #[inline(always)]
-    pub(crate) fn new<const BITS: u32>(nodes: &Nodes<3, CH, BITS>) -> Self {
-        let left = nodes.extra + (32 - SHARE) - COARSER;
-        let mut plane = Self { base: nodes.bias, along: [[0; 2]; CH] };
-        each_channel::<CH>(|channel| {
-            let [a, b, c] = nodes.values[channel];
-            plane.base[channel] = plane.base[channel].wrapping_add(a << nodes.extra);
-            plane.along[channel] = [(b - a) << left, (c - a) << left];
-        });
-        plane
-    }
-}
+pub(super) const COARSER: u32 = 3;
 
 impl<const CH: usize> Surface for Slant<CH> {
     type Value = [u32; CH];

@@ -117,7 +117,7 @@ impl TriangleSetup<'_> {
 
     /// The texels at the points that are seen at each pixel.
     fn place_in_space<'f>(&self, texture: &Textured<'f>) -> Option<Placed<'f, Seen<Slant<2>>>> {
-        Some(Placed { place: self.in_space(Slant::new(&linear(corner_nodes(texture))))?, sampler: texture.sampler })
+        Some(Placed { place: self.in_space(linear(corner_nodes(texture)).slant())?, sampler: texture.sampler })
     }
 
     /// The place in a texture as a plane on the screen.
@@ -302,8 +302,8 @@ impl<const CH: usize> Light<3, CH> {
         if !self.is_less_than(P::MOST) {
             return None;
         }
-        let level = |levels| Slant::new(&Nodes::<3, CH, RANGE>::new(levels, CHANNEL - LEVEL));
-        let seen = setup.in_space((Slant::new(&linear(corner_nodes(texture))), (level(self.diffuse), level(self.specular))))?;
+        let level = |levels| Nodes::<3, CH, RANGE>::new(levels, CHANNEL - LEVEL).slant();
+        let seen = setup.in_space((linear(corner_nodes(texture)).slant(), (level(self.diffuse), level(self.specular))))?;
         Some(setup.fill(|| Painted { patch: seen, sampler: texture.sampler }, pixels, band))
     }
 

@@ -11,7 +11,6 @@ use crate::{
     interpolate::{
         by_column::ByColumn,
         field::{Field, Nodes},
-        perspective::Slant,
         plane::Plane,
         squares::Squares,
     },
@@ -203,10 +202,10 @@ fn draw_in_space<C: Pixel>(
     let (seen, reflectance) = (setup.in_space(())?, shading.reflectance);
     let channels = channels(corner_levels(setup, shading));
     if !C::GRAY && reflectance.three_channels() {
-        let levels = || seen.with(Slant::new(&three_levels::<3, C>(channels, 0)));
+        let levels = || seen.with(three_levels::<3, C>(channels, 0).slant());
         return Some(setup.fill(levels, Rgb::new(reflectance.quarter()), band));
     }
-    let patch = || seen.with(Slant::new(&indices::<3, C>(channels[0])));
+    let patch = || seen.with(indices::<3, C>(channels[0]).slant());
     Some(if C::Ramps::CHECKERED {
         setup.fill(|| Squares::new(patch(), setup.gradients.row()), Ramp(tables.ramps), band)
     } else {
