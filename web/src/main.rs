@@ -14,7 +14,7 @@ use std::{
 };
 
 /// Largest number of bytes of the packed module and of the one that unpacks it.
-const LARGEST: usize = 1_020_000;
+const LARGEST: usize = 1_029_000;
 
 /// Bytes in which LZMA looks for likeness: more than the module has.
 const DICTIONARY: u32 = 8 << 20;
@@ -83,8 +83,8 @@ fn compile(root: &Path, target: &Path) -> Result<()> {
 
 /// The bytes packed by LZMA.
 fn packed(bytes: &[u8]) -> Result<Vec<u8>> {
-    // Instructions do not lie at multiples of four.
-    let options = LzmaOptions { dict_size: DICTIONARY, pb: 0, ..LzmaOptions::with_preset(9) };
+    // Instructions do not lie at multiples of four. Long matches, and four bits of the byte before, gain half a percent.
+    let options = LzmaOptions { dict_size: DICTIONARY, lc: 4, pb: 0, nice_len: 273, ..LzmaOptions::with_preset(9) };
     let mut packer = LzmaWriter::new_use_header(Vec::new(), &options, Some(bytes.len() as u64))?;
     packer.write_all(bytes)?;
     Ok(packer.finish()?)
