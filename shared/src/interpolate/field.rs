@@ -143,8 +143,8 @@ impl<const N: usize, const CH: usize, const BITS: u32> Nodes<N, CH, BITS> {
 }
 
 impl<const CH: usize, const BITS: u32> Nodes<3, CH, BITS> {
-    /// The plane through the nodes, for loops. Domain: the range of the nodes and the fraction bits that they are walked with have 31 bits together. Error:
-    /// 2^[`COARSER`] units of a walked value.
+    /// The plane through the nodes, for loops. Domain: the range of the nodes and the fraction bits that they are walked with have 32 bits together. Error:
+    /// 2^[`COARSER`] units of a walked value, besides what the coordinates are off.
     #[inline(always)]
     pub(crate) fn slant(&self) -> Slant<CH> {
         let left = self.extra + (32 - SHARE) - COARSER;

@@ -161,8 +161,9 @@ impl<S> Seen<S> {
     /// The field `surface` on a triangle of so many pixels in width and height together, whose corners have this inverse depth, all positive; `None` if it
     /// reaches too far for words.
     ///
-    /// Error of barycentric coordinates: 2^-13 besides that of [`PerspectivePatch::new`], which is 1/32 of a level and of a texel. Each coefficient is
-    /// off by 2^-31, times the pixels that it is walked, over the least denominator; and there are two in each number and two numbers in a quotient.
+    /// Error of barycentric coordinates: 2^-13 besides that of [`PerspectivePatch::new`]. This is 1/32 of a level where light goes from black to white, and
+    /// 1/32 of a texel where a side of the triangle is 256 texels long. Each coefficient is off by 2^-31, times the pixels that it is walked, over the
+    /// least denominator. A number has two coefficients, and a quotient has two numbers.
     pub(crate) fn new(gradients: &Gradients, inv_depth: [i32; 3], pixels: u32, surface: S) -> Option<Self> {
         let [a, b, c] = map(inv_depth, |w| w.max(1) as u64);
         let reaches_far = a.max(b).max(c) * u64::from(pixels) > a.min(b).min(c) * REACH;
@@ -262,15 +263,15 @@ impl Point {
     /// [`Self::new`] in words.
     #[inline(always)]
     fn in_words(s: u32, t: u32, whole: u32) -> Self {
-        let whole = (whole as i32).max(1) as u32;
+        const WHOLE: i32 = ONE as i32;
+        // It is less than 1, but rounding may let it reach 1 beside the nearest corner, or 0 beside the farthest one.
+        let whole = (whole as i32).clamp(0, WHOLE - 1) as u32 | 1;
         let zeros = whole.leading_zeros() & 31;
         let inverse = recip(whole << zeros) as i32;
-        // The shift is one less where `whole` is at least 1, which is beside the triangle.
-        let coordinate =
-            |part: u32, most: i32| ((product((part << (zeros.wrapping_sub(2) & 31)) as i32, inverse) >> SHARE) as i32).clamp(0, most);
-        let s = coordinate(s, ONE as i32);
-        let t = coordinate(t, ONE as i32 - s);
-        Self([ONE as i32 - s - t, s, t])
+        let coordinate = |part: u32, most: i32| ((product((part << (zeros - 2)) as i32, inverse) >> SHARE) as i32).clamp(0, most);
+        let s = coordinate(s, WHOLE);
+        let t = coordinate(t, WHOLE - s);
+        Self([WHOLE - s - t, s, t])
     }
 
     /// The point with the barycentric coordinates `s / whole` and `t / whole` of corners 1 and 2, moved into the triangle. Beside a sliver one over
@@ -293,5 +294,56 @@ impl Point {
         let corner = |u: i64| ((u * (2 * u - ONE)) >> SHARE) as i32;
         let edge = |u: i64, v: i64| ((u * v) >> (SHARE - 2)) as i32;
         [corner(a), corner(b), corner(c), edge(a, b), edge(b, c), edge(c, a)]
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::interpolate::field::Nodes;
+    use proptest::prelude::*;
+
+    proptest! {
+        #![proptest_config(ProptestConfig::with_cases(20_000))]
+
+        /// In words, too, coordinates are quotients, up to the bits that the numerators have, and no place beside a triangle is far off.
+        #[test]
+        fn coordinates_in_words_are_quotients(
+            whole in prop_oneof![1i64..ONE, 1i64..100, ONE - 50..ONE + 50],
+            s in 0.0f64..=1.0,
+            t in 0.0f64..=1.0,
+            off in prop::array::uniform2(-3i64..=3),
+        ) {
+            let (s, t) = if s + t > 1.0 { (1.0 - s, 1.0 - t) } else { (s, t) };
+            let part = |share: f64, off: i64| (share * whole as f64) as i64 + off;
+            let [s, t] = [part(s, off[0]), part(t, off[1])];
+            let Point([at_a, at_s, at_t]) = Point::in_words(s as u32, t as u32, whole as u32);
+            prop_assert_eq!(at_a + at_s + at_t, ONE as i32);
+            prop_assert!(at_a >= 0 && at_s >= 0 && at_t >= 0);
+            let exact = |part: i64| (part as f64 / whole as f64).clamp(0.0, 1.0);
+            let off = |at: i32, exact: f64| (f64::from(at) / ONE as f64 - exact).abs();
+            // The denominator is odd, and so off by a unit; so far beyond 1 it counts as 1.
+            let bound = 54.0 / whole as f64 * if whole < ONE { 1.0 / 54.0 } else { 1.0 } + 2f64.powi(-26);
+            prop_assert!(off(at_s, exact(s)) <= bound, "{} {}", at_s, exact(s));
+            prop_assert!(off(at_t, exact(t).min(1.0 - exact(s))) <= 2.0 * bound, "{} {}", at_t, exact(t));
+        }
+
+        /// The levels of a slant are those of the plane, up to the bits that it leaves out.
+        #[test]
+        fn slants_are_planes(
+            corners in prop::array::uniform3(0i32..=255 << 7),
+            bias in -1_000_000i32..1_000_000,
+            s in 0..=ONE as i32,
+            t in 0..=ONE as i32,
+        ) {
+            let (s, t) = if s > ONE as i32 - t { (ONE as i32 - s, ONE as i32 - t) } else { (s, t) };
+            let nodes = Nodes::<3, 1, 15>::new([corners], 16).biased([bias]);
+            let point = Point([ONE as i32 - s - t, s, t]);
+            let ([slant], [plane]) = (nodes.slant().at(&point), nodes.at(&point));
+            let difference = plane.wrapping_sub(slant) as i32;
+            prop_assert!((-1..=1 << COARSER).contains(&difference), "{}", difference);
+            let [raised] = nodes.slant().raised(&[7]).at(&point);
+            prop_assert_eq!(raised, slant.wrapping_add(7));
+        }
     }
 }

@@ -4,8 +4,7 @@ use zerocopy::{FromBytes, Immutable, IntoBytes, KnownLayout};
 
 use crate::{
     interpolate::{Checkerboard, HALF_RANGE, Patch, Walker, each_channel},
-    math::vector::map,
-    setup::gradients::{GUARD, Gradients},
+    setup::gradients::Gradients,
 };
 
 /// A linear function `c + dx x + dy y` in each of `CH` channels, standing on one row.
@@ -31,7 +30,12 @@ impl PlaneRow {
     /// See [`Plane::fit`].
     #[inline(always)]
     fn fit<const BITS: u32>(gradients: &Gradients, nodes: [i32; 3], extra: u32, bias: i32) -> Self {
-        let [c, dx, dy] = gradients.linear::<BITS>(nodes, extra);
+        Self::new(gradients, gradients.linear::<BITS>(nodes, extra), bias)
+    }
+
+    /// The linear function with these coefficients at the anchor, and `bias` added to its values.
+    #[inline(always)]
+    fn new(gradients: &Gradients, [c, dx, dy]: [i32; 3], bias: i32) -> Self {
         // The move from the anchor column to column 0 is exact, modulo 2^32.
         Self { c: c.wrapping_sub(dx.wrapping_mul(gradients.column())).wrapping_add(bias), dx, dy }
     }
@@ -72,8 +76,7 @@ impl<const CH: usize> Plane<CH> {
     pub(super) fn fit_any(gradients: &Gradients, nodes: &[[i32; 3]; CH]) -> Self {
         let mut plane = Self::ZERO;
         for (row, nodes) in plane.0.iter_mut().zip(nodes) {
-            let [c, dx, dy] = map(gradients.fine(*nodes), |number| (number.wrapping_add(1 << (GUARD - 1)) >> GUARD) as i32);
-            *row = PlaneRow { c: c.wrapping_sub(dx.wrapping_mul(gradients.column())), dx, dy };
+            *row = PlaneRow::new(gradients, gradients.linear_any(*nodes, 0), 0);
         }
         plane
     }

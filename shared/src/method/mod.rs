@@ -164,8 +164,7 @@ pub(crate) trait Loops {
     /// Whether the method has only the general loop.
     const GENERAL: bool = false;
 
-    /// Whether the loops leave some triangles of the styles that they take to the general loop, also without perspective and
-    /// textures.
+    /// Whether the loops leave some triangles of the styles that they take to the general loop, also without perspective and textures.
     const DECLINES: bool = true;
 
     /// Whether there are loops for textures.
@@ -314,13 +313,19 @@ impl TriangleSetup<'_> {
         }
     }
 
+    /// The inverse depths of the corners, Q0.28.
+    #[inline(always)]
+    fn depths(&self) -> [i32; 3] {
+        let [a, b, c] = self.corners;
+        [a.depth, b.depth, c.depth]
+    }
+
     /// Returns the inverse depths of the corners (Q0.28), for perspective-correct interpolation. Returns `None` if that is off, or if all
     /// corners are equally far, so that linear interpolation on the screen gives the same result.
     #[doc(hidden)]
     #[inline(always)]
     pub fn inv_depth(&self) -> Option<[i32; 3]> {
-        let [a, b, c] = self.corners;
-        let (a, b, c) = (a.depth, b.depth, c.depth);
+        let [a, b, c] = self.depths();
         // If all corners are equally far, interpolation on the screen is the same.
         (self.perspective && !(a == b && b == c)).then_some([a, b, c])
     }
@@ -334,7 +339,7 @@ impl TriangleSetup<'_> {
     fn in_space<S>(&self, surface: S) -> Option<Seen<S>> {
         let [a, b, c] = self.screen.corners();
         let extent = |k: usize| a[k].max(b[k]).max(c[k]).wrapping_sub(a[k].min(b[k]).min(c[k])) as u32 >> SUBPIXEL;
-        Seen::new(self.gradients, self.corners.map(|corner| corner.depth), extent(0) + extent(1), surface)
+        Seen::new(self.gradients, self.depths(), extent(0) + extent(1), surface)
     }
 
     /// How values are interpolated on the screen that are linear over the triangle and differ by `range`, Q9.7, between corners: in the fastest way
@@ -370,8 +375,7 @@ impl TriangleSetup<'_> {
 
     /// [`Self::middles`] on the screen, Q2.30.
     pub(crate) fn fine_middles(&self) -> [u32; 3] {
-        let [a, b, c] = self.corners;
-        perspective::fine_middles([a.depth, b.depth, c.depth])
+        perspective::fine_middles(self.depths())
     }
 
     /// Whether such a quadratic also serves a root of N·H, which bends more than light: besides, the farthest corner is at most 9/8 as far as the

@@ -97,7 +97,7 @@ impl TriangleSetup<'_> {
         if let Some(quadric) = by_quadratic(self, texture, self.way_of_places(texture)) {
             return PlacePatch::OnScreen(quadric);
         }
-        PlacePatch::InSpace(PerspectivePatch::new(self.gradients, self.corners.map(|corner| corner.depth), linear(corner_nodes(texture))))
+        PlacePatch::InSpace(PerspectivePatch::new(self.gradients, self.depths(), linear(corner_nodes(texture))))
     }
 
     /// How the place in a texture is interpolated.
@@ -105,7 +105,7 @@ impl TriangleSetup<'_> {
         if !in_perspective {
             return LinearWay::Plane;
         }
-        perspective::linear_way(self.corners.map(|corner| corner.depth), sampler.range(places), MOST)
+        perspective::linear_way(self.depths(), sampler.range(places), MOST)
     }
 
     /// The texels over the triangle; `None` if it has no texture, or a quadratic is too far off for the place.
@@ -268,9 +268,25 @@ impl<const N: usize, const CH: usize> Light<N, CH> {
         levels.as_flattened().iter().fold(0, |most, &level| most.max(level))
     }
 
-    /// Whether no highlight reaches the triangle.
-    fn is_matt(&self) -> bool {
-        Self::brightest(&self.specular) == 0
+    /// Draws a triangle by the texels of `place` and by polynomials that `fit` makes of light, without highlights if none reaches it.
+    #[inline(always)]
+    fn fill<C: Pixel, T, L>(
+        &self,
+        setup: &TriangleSetup<'_>,
+        place: impl FnOnce() -> T,
+        fit: impl Fn([[i32; N]; CH]) -> L,
+        pixels: impl Pixels<C, CH>,
+        band: &mut Band<'_, C>,
+    ) -> u32
+    where
+        T: Patch<Walker: Walker<Value = Colour>>,
+        L: Patch<Walker: Walker<Value = [u32; CH]>>,
+    {
+        if Self::brightest(&self.specular) == 0 {
+            setup.fill(|| (place(), fit(self.diffuse)), pixels, band)
+        } else {
+            setup.fill(|| (place(), (fit(self.diffuse), fit(self.specular))), pixels, band)
+        }
     }
 
     /// Whether the sum at a pixel is less than `most` of 255 for sure. A quadratic exceeds the interval of its nodes, which begins at 0 here, by at most a
@@ -299,12 +315,9 @@ impl<const CH: usize> Light<3, CH> {
         pixels: P,
         band: &mut Band<'_, C>,
     ) -> Option<u32> {
-        if !self.is_less_than(P::MOST) {
-            return None;
-        }
         let level = |levels| Nodes::<3, CH, RANGE>::new(levels, CHANNEL - LEVEL).slant();
         let seen = setup.in_space((linear(corner_nodes(texture)).slant(), (level(self.diffuse), level(self.specular))))?;
-        Some(setup.fill(|| Painted { patch: seen, sampler: texture.sampler }, pixels, band))
+        Some(setup.fill(|| Placed::<_, false> { place: seen, sampler: texture.sampler }, pixels, band))
     }
 
     /// The light at the corners and at these shares of the edges.
@@ -352,39 +365,29 @@ impl<const CH: usize> Drawn<CH> for Light<3, CH> {
         pixels: P,
         band: &mut Band<'_, C>,
     ) -> Option<u32> {
+        if !self.is_less_than(P::MOST) {
+            return None;
+        }
         match setup.linear_way(|| self.range()) {
             LinearWay::Plane => {}
             LinearWay::Quadratic(shares) => return self.six(shares).draw(setup, texture, pixels, band),
             LinearWay::InSpace => return self.draw_in_space(setup, texture, pixels, band),
         }
-        if !self.is_less_than(P::MOST) {
-            return None;
-        }
         let fit = |levels| Nodes::<3, CH, RANGE>::new(levels, CHANNEL - LEVEL).fit(setup.gradients);
-        let (light, highlights) = (|| fit(self.diffuse), || fit(self.specular));
-        let sampler = texture.sampler;
         let way = setup.way_of_places(texture);
         if matches!(way, LinearWay::Plane) {
-            let place = || Placed::<_, true> { place: setup.place_by_plane(texture), sampler };
-            return Some(if self.is_matt() {
-                setup.fill(|| (place(), light()), pixels, band)
-            } else {
-                setup.fill(|| (place(), (light(), highlights())), pixels, band)
-            });
+            let place = || Placed::<_, true> { place: setup.place_by_plane(texture), sampler: texture.sampler };
+            return Some(self.fill(setup, place, fit, pixels, band));
         }
-        let Some(quadratic) = by_quadratic(setup, texture, way) else {
-            if PERSPECTIVE && setup.inv_depth().is_some() {
-                return self.draw_in_space(setup, texture, pixels, band);
-            }
-            let place = setup.place_in_space(texture)?;
-            return Some(setup.fill(|| (place, (light(), highlights())), pixels, band));
-        };
-        let place = Placed::<_, false> { place: ByColumn(quadratic), sampler };
-        Some(if self.is_matt() {
-            setup.fill(|| (place, light()), pixels, band)
-        } else {
-            setup.fill(|| (place, (light(), highlights())), pixels, band)
-        })
+        if let Some(quadratic) = by_quadratic(setup, texture, way) {
+            let place = || Placed::<_, false> { place: ByColumn(quadratic), sampler: texture.sampler };
+            return Some(self.fill(setup, place, fit, pixels, band));
+        }
+        if PERSPECTIVE && setup.inv_depth().is_some() {
+            return self.draw_in_space(setup, texture, pixels, band);
+        }
+        let place = setup.place_in_space(texture)?;
+        Some(setup.fill(|| (place, (fit(self.diffuse), fit(self.specular))), pixels, band))
     }
 }
 
@@ -401,17 +404,12 @@ impl<const CH: usize> Drawn<CH> for Light<6, CH> {
             return None;
         }
         let fit = |levels| ByColumn(Nodes::<6, CH, RANGE>::new(levels, CHANNEL - LEVEL).fit(setup.gradients));
-        let (light, highlights) = (|| fit(self.diffuse), || fit(self.specular));
-        let Some(quadratic) = by_quadratic(setup, texture, setup.way_of_places(texture)) else {
-            let place = setup.place_in_space(texture)?;
-            return Some(setup.fill(|| (place, (light(), highlights())), pixels, band));
-        };
-        let place = Placed::<_, false> { place: ByColumn(quadratic), sampler: texture.sampler };
-        Some(if self.is_matt() {
-            setup.fill(|| (place, light()), pixels, band)
-        } else {
-            setup.fill(|| (place, (light(), highlights())), pixels, band)
-        })
+        if let Some(quadratic) = by_quadratic(setup, texture, setup.way_of_places(texture)) {
+            let place = || Placed::<_, false> { place: ByColumn(quadratic), sampler: texture.sampler };
+            return Some(self.fill(setup, place, fit, pixels, band));
+        }
+        let place = setup.place_in_space(texture)?;
+        Some(setup.fill(|| (place, (fit(self.diffuse), fit(self.specular))), pixels, band))
     }
 }
 
@@ -581,7 +579,48 @@ impl<C: Pixel> PixelShader<(Colour, ([u32; 1], [u32; 1]))> for GrayTexels<'_, C>
     }
 }
 
-/// The place in a texture, by a polynomial. Where the texture has a hole, the surface covers no pixel.
+/// A place in a texture, alone or with what is interpolated beside it.
+pub trait Place {
+    /// The texel in the stead of the place.
+    type Texel;
+
+    /// Takes the texel from `sampler`. Bits of a place may be `aligned` already.
+    fn texel(self, sampler: &Sampler<'_>, aligned: bool) -> Self::Texel;
+
+    /// The colour of a texel.
+    fn colour(texel: &Self::Texel) -> Colour;
+}
+
+impl Place for [u32; 2] {
+    type Texel = Colour;
+
+    #[inline(always)]
+    fn texel(self, sampler: &Sampler<'_>, aligned: bool) -> Colour {
+        sampler.texel(if aligned { self } else { sampler.aligned(self) })
+    }
+
+    #[inline(always)]
+    fn colour(texel: &Colour) -> Colour {
+        *texel
+    }
+}
+
+impl<V> Place for ([u32; 2], V) {
+    type Texel = (Colour, V);
+
+    #[inline(always)]
+    fn texel(self, sampler: &Sampler<'_>, aligned: bool) -> (Colour, V) {
+        let (place, light) = self;
+        (place.texel(sampler, aligned), light)
+    }
+
+    #[inline(always)]
+    fn colour((texel, _): &(Colour, V)) -> Colour {
+        *texel
+    }
+}
+
+/// A [`Place`] that is walked. Where the texture has a hole, the surface covers no pixel.
 #[derive(Clone, Copy, Debug)]
 pub struct Placed<'f, P, const ALIGNED: bool = false> {
     /// The place, whose bits already stand where the sampler cuts the number of a texel from them, or are moved there at each pixel.
@@ -590,7 +629,7 @@ pub struct Placed<'f, P, const ALIGNED: bool = false> {
     pub sampler: &'f Sampler<'f>,
 }
 
-impl<'f, P: Patch<Walker: Walker<Value = [u32; 2]>>, const ALIGNED: bool> Patch for Placed<'f, P, ALIGNED> {
+impl<'f, P: Patch<Walker: Walker<Value: Place>>, const ALIGNED: bool> Patch for Placed<'f, P, ALIGNED> {
     type Walker = Placed<'f, P::Walker, ALIGNED>;
 
     #[inline(always)]
@@ -612,74 +651,17 @@ impl<'f, P: Patch<Walker: Walker<Value = [u32; 2]>>, const ALIGNED: bool> Patch 
     const WORDS: usize = 1 << 8;
 }
 
-impl<W: Walker<Value = [u32; 2]>, const ALIGNED: bool> Walker for Placed<'_, W, ALIGNED> {
-    type Value = Colour;
+impl<W: Walker<Value: Place>, const ALIGNED: bool> Walker for Placed<'_, W, ALIGNED> {
+    type Value = <W::Value as Place>::Texel;
 
     #[inline(always)]
     fn step(&mut self) {
         self.place.step();
     }
 
-    /// The texel.
-    #[inline(always)]
-    fn value(&self) -> Colour {
-        let place = self.place.value();
-        self.sampler.texel(if ALIGNED { place } else { self.sampler.aligned(place) })
-    }
-
-    const HAS_HOLES: bool = TRANSPARENCY;
-
-    #[inline(always)]
-    fn may_have_holes(&self) -> bool {
-        TRANSPARENCY && self.sampler.has_holes
-    }
-
-    #[inline(always)]
-    fn covers(texel: &Colour) -> bool {
-        !TRANSPARENCY || texel.hole == 0
-    }
-}
-
-/// The texel and the light at the point that is seen at each pixel.
-#[derive(Clone, Copy)]
-struct Painted<'f, P> {
-    patch: P,
-    sampler: &'f Sampler<'f>,
-}
-
-impl<'f, V, P: Patch<Walker: Walker<Value = ([u32; 2], V)>>> Patch for Painted<'f, P> {
-    type Walker = Painted<'f, P::Walker>;
-
-    #[inline(always)]
-    fn jump(&mut self, rows: i32) {
-        self.patch.jump(rows);
-    }
-
-    #[inline(always)]
-    fn step_row(&mut self) {
-        self.patch.step_row();
-    }
-
-    #[inline(always)]
-    fn enter(&self, x: i32) -> Self::Walker {
-        Painted { patch: self.patch.enter(x), sampler: self.sampler }
-    }
-
-    const WORDS: usize = P::WORDS;
-}
-
-impl<V, W: Walker<Value = ([u32; 2], V)>> Walker for Painted<'_, W> {
-    type Value = (Colour, V);
-
-    #[inline(always)]
-    fn step(&mut self) {
-        self.patch.step();
-    }
-
     #[inline(always)]
     fn value(&self) -> Self::Value {
-        let (place, light) = self.patch.value();
-        (self.sampler.texel(self.sampler.aligned(place)), light)
+        self.place.value().texel(self.sampler, ALIGNED)
     }
 
     const HAS_HOLES: bool = TRANSPARENCY;
@@ -690,8 +672,8 @@ impl<V, W: Walker<Value = ([u32; 2], V)>> Walker for Painted<'_, W> {
     }
 
     #[inline(always)]
-    fn covers((texel, _): &Self::Value) -> bool {
-        !TRANSPARENCY || texel.hole == 0
+    fn covers(texel: &Self::Value) -> bool {
+        !TRANSPARENCY || W::Value::colour(texel).hole == 0
     }
 }
 

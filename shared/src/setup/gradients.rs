@@ -344,8 +344,9 @@ impl Gradients {
         [(i0 << extra).wrapping_add(rounded(c, left)), rounded(dx, left), rounded(dy, left)]
     }
 
+    /// [`Self::linear`] for nodes in any range.
     #[inline(never)]
-    fn linear_any(self, nodes: [i32; 3], extra: u32) -> [i32; 3] {
+    pub(crate) fn linear_any(self, nodes: [i32; 3], extra: u32) -> [i32; 3] {
         let [c, dx, dy] = self.plane(nodes, extra);
         let [c, dx, dy, ..] = self.round([c, dx, dy, 0, 0, 0]);
         [c, dx, dy]

@@ -2,7 +2,7 @@
 
 use super::{bus::Bus, launch::Launch, missing};
 use crate::{
-    Executed,
+    Board, Executed,
     elf::Elf,
     parts::{
         flash::{FLASH, flashed, word},
@@ -20,9 +20,6 @@ const FLASH_SIZE: usize = 4 << 20;
 /// The mask ROM looks for a description of the program in so many bytes, between these words.
 const DESCRIBED: usize = 4 << 10;
 const DESCRIPTION: [u32; 2] = [0xFFFF_DED3, 0xAB12_3579];
-
-/// Width and height of the panel.
-const SIZE: (u32, u32) = (240, 240);
 
 /// The number of an exception that a program does not survive.
 const HARD_FAULT: u32 = 3;
@@ -68,7 +65,7 @@ impl Machine {
         }
         let Booted { cores, chip, atomics } = booted(&flash, 0);
         let rtt = Rtt(elf.symbol("_SEGGER_RTT")?.0);
-        Ok(Self { flash, cores, atomics, launch: Some(Launch::default()), bus: Bus::new(chip, Panel::new(SIZE)), rtt })
+        Ok(Self { flash, cores, atomics, launch: Some(Launch::default()), bus: Bus::new(chip, Panel::new(Board::Pico2.size())), rtt })
     }
 
     /// The instruction at an address in flash or RAM, of which the second half counts if it has one.
