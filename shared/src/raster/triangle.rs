@@ -2,7 +2,7 @@
 
 use crate::{
     arch::product::HALVES,
-    features::{TRANSPARENCY, TRANSPARENT},
+    features::TRANSPARENCY,
     format::{DEPTH, DEPTH_NODE, DEPTH_WALK, SUBPIXEL},
     geometry::projection::ScreenVertex,
     interpolate::{Constant, Patch, Walker, plane::Plane},
@@ -11,7 +11,7 @@ use crate::{
         active::{ActiveTriangle, ActiveTriangles},
         band::Band,
         canvas::{Canvas, SpanShader},
-        glass::{IfTransparent, RUN, Sheet},
+        glass::{Behind, RunFiller, Sheet},
         pixel_shader::PixelShader,
         span::{DepthTest, fill},
     },
@@ -72,8 +72,6 @@ pub(crate) struct Rows<'b, D, P: Patch, T: PixelShader<<P::Walker as Walker>::Va
     pub(crate) depth: D,
     pub(crate) patch: P,
     pub(crate) shader: T,
-    /// Room for a run of a transparent surface.
-    pub(crate) sheet: IfTransparent<Option<&'b mut Sheet<T::Pixel>>>,
 }
 
 const _: () = {
@@ -234,10 +232,10 @@ impl<'f> ScreenTriangle<'f> {
         shader: T,
         band: &mut Band<'_, T::Pixel>,
     ) -> u32 {
-        let has_kernel = const { kernels::AVAILABLE && T::HAS_KERNEL && P::IS_LINEAR && D::IS_LINEAR && (T::CHEAP || D::WORDS > 0) };
-        // Runs of transparent surfaces do not lie in the band, where kernels look for them.
-        let is_glass = TRANSPARENCY && band.sheet.iter().any(|sheet| sheet.glass.is_some());
-        if has_kernel && !is_glass {
+        if TRANSPARENCY && band.sheet.iter().any(|sheet| sheet.glass.is_some()) {
+            return self.walk_glass(gradients, depth, patch, shader, band);
+        }
+        if const { kernels::AVAILABLE && T::HAS_KERNEL && P::IS_LINEAR && D::IS_LINEAR && (T::CHEAP || D::WORDS > 0) } {
             return self.walk_by_kernel(gradients, depth, patch, shader, band);
         }
         let sides = &self.rows.sides;
@@ -250,11 +248,7 @@ impl<'f> ScreenTriangle<'f> {
             if row < stop {
                 rows.height = stop.wrapping_sub(row) as u32;
                 rows.count = rows.sides.columns();
-                if is_glass {
-                    rows.fill_glass();
-                } else {
-                    fill_rows(&mut rows);
-                }
+                fill_rows(&mut rows);
             }
             if stop >= sides.end {
                 break;
@@ -266,6 +260,51 @@ impl<'f> ScreenTriangle<'f> {
         if P::WORDS <= ActiveTriangle::WORDS && self.rows.key != 0 && sides.goes_on() {
             let Rows { sides: pair, depth, patch, .. } = rows;
             save_active((self.rows.key, sides.state(pair, T::ID)), &depth, &patch, &mut band.active);
+        }
+        filled
+    }
+
+    /// [`Self::walk`] of a transparent surface.
+    #[inline(never)]
+    fn walk_glass<D: Patch<Walker: DepthTest>, P: Patch, T: PixelShader<<P::Walker as Walker>::Value>>(
+        &self,
+        gradients: &Gradients,
+        depth: D,
+        patch: P,
+        shader: T,
+        band: &mut Band<'_, T::Pixel>,
+    ) -> u32 {
+        let (start, width, sides) = (band.start(self.rows.sides.row), band.width, self.rows.sides.pair);
+        let Some(Sheet { glass: Some(glass), pixels, depth: buffer }) = band.sheet.first_mut() else { return 0 };
+        let mut rows = Rows { pixels, buffer, width: 0, start: 0, sides, count: 0, height: 0, filled: 0, depth, patch, shader };
+        let depth = if D::WORDS > 0 { Some(&*band.depth) } else { None };
+        self.fill_glass(
+            gradients,
+            &mut rows,
+            &mut Behind { glass: *glass, pixels: band.pixels, depth, start, width, active: &mut band.active },
+        )
+    }
+
+    /// Draws the rows of a transparent surface, which stands on the anchor's row.
+    #[inline(never)]
+    fn fill_glass<C: Pixel>(&self, gradients: &Gradients, surface: &mut dyn RunFiller<C>, behind: &mut Behind<'_, '_, C>) -> u32 {
+        let RowRange { sides, key, resumed, .. } = &self.rows;
+        let (mut row, mut stop, mut pair, mut filled) = (sides.row, sides.stop, sides.pair, 0u32);
+        surface.start_at(row, if *resumed == 0 { row.wrapping_sub(gradients.row()) } else { 0 });
+        loop {
+            while row < stop {
+                behind.cover(surface, pair);
+                filled = filled.wrapping_add(pair.columns());
+                pair.skip(1);
+                row += 1;
+            }
+            if stop >= sides.end {
+                break;
+            }
+            stop = self.next(row, &mut pair);
+        }
+        if *key != 0 && sides.goes_on() {
+            surface.save((*key, sides), pair, behind.active);
         }
         filled
     }
@@ -446,6 +485,36 @@ pub(crate) fn fill_rows<D: Patch<Walker: DepthTest>, P: Patch, T: PixelShader<<P
     }
 }
 
+/// Rows of a transparent surface, which lie in the room for a run.
+impl<D: Patch<Walker: DepthTest>, P: Patch, T: PixelShader<<P::Walker as Walker>::Value>> RunFiller<T::Pixel> for Rows<'_, D, P, T> {
+    fn run(&mut self) -> (&mut [T::Pixel], &mut [u16]) {
+        (self.pixels, self.buffer)
+    }
+
+    fn fill_run(&mut self, run: LeftRight, is_last: bool) {
+        let row = (!is_last).then_some((self.depth, self.patch, self.shader));
+        (self.start, self.sides, self.count, self.height) = (((run.left.x >> COLUMN) as usize).wrapping_neg(), run, run.columns(), 1);
+        fill_rows(self);
+        if let Some(row) = row {
+            (self.depth, self.patch, self.shader) = row;
+            self.shader.take_back();
+        }
+    }
+
+    fn start_at(&mut self, row: i32, rows: i32) {
+        if rows != 0 {
+            self.patch.jump(rows);
+        }
+        self.shader.start_at(row);
+    }
+
+    fn save(&self, (key, sides): (u32, &EdgeWalker), pair: LeftRight, active: &mut ActiveTriangles<'_>) {
+        if P::WORDS <= ActiveTriangle::WORDS {
+            save_active((key, sides.state(pair, T::ID)), &self.depth, &self.patch, active);
+        }
+    }
+}
+
 impl<'b, D: Patch<Walker: DepthTest>, P: Patch, T: PixelShader<<P::Walker as Walker>::Value>> Rows<'b, D, P, T> {
     /// Whether rows are filled in a local copy, see [`fill_rows`].
     const LOCAL: bool = HALVES || cfg!(not(target_arch = "arm")) || size_of::<P>() == 0;
@@ -458,20 +527,7 @@ impl<'b, D: Patch<Walker: DepthTest>, P: Patch, T: PixelShader<<P::Walker as Wal
     pub(crate) fn new(band: &'b mut Band<'_, T::Pixel>, row: i32, sides: LeftRight, depth: D, patch: P, mut shader: T) -> Self {
         let (width, start) = (band.width, band.start(row));
         shader.start_at(row);
-        Self {
-            pixels: band.pixels,
-            buffer: band.depth,
-            width,
-            start,
-            sides,
-            count: 0,
-            height: 0,
-            filled: 0,
-            depth,
-            patch,
-            shader,
-            sheet: band.sheet.each_mut().map(Some),
-        }
+        Self { pixels: band.pixels, buffer: band.depth, width, start, sides, count: 0, height: 0, filled: 0, depth, patch, shader }
     }
 
     /// Fills one row and steps the edges to the next.
@@ -510,57 +566,16 @@ impl<'b, D: Patch<Walker: DepthTest>, P: Patch, T: PixelShader<<P::Walker as Wal
         }
     }
 
-    /// Fills the rows to come of a transparent surface: run by run into a sheet, as rows of their own, which are then mixed with the band.
-    #[inline(never)]
-    fn fill_glass(&mut self) {
-        while self.height > 0 {
-            let [left, mut end] = [self.sides.left, self.sides.right].map(|side| (side.x >> COLUMN) as usize);
-            while end > left {
-                let first = end.saturating_sub(RUN).max(left);
-                let run = self.start.wrapping_add(first)..self.start.wrapping_add(end);
-                let Some((sheet, behind)) = self.sheet.iter_mut().flatten().next().zip(self.pixels.get_mut(run.clone())) else { return };
-                let Some(depth) = D::Walker::depth(self.buffer, run) else { return };
-                sheet.put_depth(depth);
-                let mut sides = self.sides;
-                (sides.left.x, sides.right.x) = ((first as u32) << COLUMN, (end as u32) << COLUMN);
-                let (pixels, buffer) = sheet.run();
-                fill_rows(&mut Rows {
-                    pixels,
-                    buffer,
-                    width: 0,
-                    start: first.wrapping_neg(),
-                    sides,
-                    count: (end - first) as u32,
-                    height: 1,
-                    filled: 0,
-                    depth: self.depth,
-                    patch: self.patch,
-                    shader: self.shader,
-                    sheet: [const { None }; TRANSPARENT],
-                });
-                self.shader.take_back();
-                sheet.show(behind, depth);
-                end = first;
-            }
-            self.filled = self.filled.wrapping_add(self.count);
-            self.start = self.start.wrapping_add(self.width);
-            self.sides.skip(1);
-            self.count = self.sides.columns();
-            self.step();
-            self.height -= 1;
-        }
-    }
-
     /// Fills all rows in a local copy.
     #[inline(always)]
     fn fill_here(&mut self) {
         let Rows { width, start, sides, count, height, filled, depth, patch, shader, .. } = *self;
-        let (pixels, sheet) = (&mut *self.pixels, [const { None }; TRANSPARENT]);
+        let pixels = &mut *self.pixels;
         // Cut to the length of the pixels, it needs no test of its own in each row. On x86-64, by measurement, that costs an instruction a
         // pixel.
         let length = if cfg!(target_arch = "arm") { pixels.len() } else { self.buffer.len() };
         let Some(buffer) = D::Walker::depth(self.buffer, 0..length) else { return };
-        let mut rows = Rows { pixels, buffer, width, start, sides, count, height, filled, depth, patch, shader, sheet };
+        let mut rows = Rows { pixels, buffer, width, start, sides, count, height, filled, depth, patch, shader };
         let ahead = |count: u32| if Self::AHEAD { count } else { 0 };
         rows.filled = rows.filled.wrapping_add(ahead(rows.count));
         loop {
