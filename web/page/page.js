@@ -62,7 +62,8 @@ const bytesOf = (id) => Uint8Array.from(atob($(id).textContent), (c) => c.charCo
 // The module, which another one unpacks.
 const compiled = async () => {
   const packed = bytesOf("module"), length = Number($("module").dataset.length);
-  const { memory, place, unpack } = (await WebAssembly.instantiate(bytesOf("unpacker"))).instance.exports;
+  const unpacker = new Blob([bytesOf("unpacker")]).stream().pipeThrough(new DecompressionStream("gzip"));
+  const { memory, place, unpack } = (await WebAssembly.instantiate(await new Response(unpacker).arrayBuffer())).instance.exports;
   // A place may be beyond the memory that was there before.
   const packedAddress = place(packed.length);
   new Uint8Array(memory.buffer, packedAddress, packed.length).set(packed);

@@ -1,10 +1,12 @@
 //! Builds the page of the playground: `cargo run --release -p microphong-web`.
 //!
 //! The page is one file. A page that is opened from disk can fetch nothing, so the module, its style and its scripts are in its text. The module is
-//! packed by LZMA, and a second, small module unpacks it: loops for several pixel formats are alike, and gzip looks for likeness in 32 KB alone.
+//! packed by LZMA, and a second, small module unpacks it: loops for several pixel formats are alike, and gzip looks for likeness in 32 KB alone. Browsers
+//! unpack the second module themselves, which is packed by gzip.
 
 use anyhow::{Context, Result, ensure};
 use base64::{Engine, engine::general_purpose::STANDARD};
+use flate2::{Compression, write::GzEncoder};
 use lzma_rust2::{LzmaOptions, LzmaWriter};
 use std::{
     env, fs,
@@ -13,8 +15,8 @@ use std::{
     process::Command,
 };
 
-/// Largest number of bytes of the packed module and of the one that unpacks it.
-const LARGEST: usize = 1_029_000;
+/// Largest number of bytes of both packed modules.
+const LARGEST: usize = 1_020_000;
 
 /// Bytes in which LZMA looks for likeness: more than the module has.
 const DICTIONARY: u32 = 8 << 20;
@@ -35,7 +37,7 @@ fn main() -> Result<()> {
         fs::read(&file).with_context(|| format!("cannot read {}", file.display()))
     });
     let (module, unpacker) = (module?, unpacker?);
-    let packed = packed(&module)?;
+    let (packed, unpacker) = (packed(&module)?, gzipped(&unpacker)?);
     let all = packed.len() + unpacker.len();
     ensure!(all <= LARGEST, "the packed modules have {all} bytes, and may have {LARGEST}; find what has grown");
     let length = module.len().to_string();
@@ -86,6 +88,13 @@ fn packed(bytes: &[u8]) -> Result<Vec<u8>> {
     // Instructions do not lie at multiples of four. Long matches, and four bits of the byte before, gain half a percent.
     let options = LzmaOptions { dict_size: DICTIONARY, lc: 4, pb: 0, nice_len: 273, ..LzmaOptions::with_preset(9) };
     let mut packer = LzmaWriter::new_use_header(Vec::new(), &options, Some(bytes.len() as u64))?;
+    packer.write_all(bytes)?;
+    Ok(packer.finish()?)
+}
+
+/// The bytes packed by gzip.
+fn gzipped(bytes: &[u8]) -> Result<Vec<u8>> {
+    let mut packer = GzEncoder::new(Vec::new(), Compression::best());
     packer.write_all(bytes)?;
     Ok(packer.finish()?)
 }
