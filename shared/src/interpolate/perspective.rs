@@ -161,9 +161,9 @@ impl<S> Seen<S> {
     /// The field `surface` on a triangle of so many pixels in width and height together, whose corners have this inverse depth, all positive; `None` if it
     /// reaches too far for words.
     ///
-    /// Error of barycentric coordinates: 2^-13 besides that of [`PerspectivePatch::new`]. This is 1/32 of a level where light goes from black to white, and
-    /// 1/32 of a texel where a side of the triangle is 256 texels long. Each coefficient is off by 2^-31, times the pixels that it is walked, over the
-    /// least denominator. A number has two coefficients, and a quotient has two numbers.
+    /// Error of barycentric coordinates: 2^-12 besides that of [`PerspectivePatch::new`]. This is 1/16 of a level where light goes from black to white, and
+    /// 1/16 of a texel where a side of the triangle is 256 texels long. Each coefficient is off by 2^-31, times the pixels that it is walked, over the
+    /// least denominator, which is at least the pixels times 2^-18. A number has two coefficients, and a quotient has two numbers.
     pub(crate) fn new(gradients: &Gradients, inv_depth: [i32; 3], pixels: u32, surface: S) -> Option<Self> {
         let [a, b, c] = map(inv_depth, |w| w.max(1) as u64);
         let reaches_far = a.max(b).max(c) * u64::from(pixels) > a.min(b).min(c) * REACH;
@@ -264,7 +264,8 @@ impl Point {
     #[inline(always)]
     fn in_words(s: u32, t: u32, whole: u32) -> Self {
         const WHOLE: i32 = ONE as i32;
-        // It is less than 1, but rounding may let it reach 1 beside the nearest corner, or 0 beside the farthest one.
+        // The denominator is less than 1, but rounding may let it reach 1 beside the nearest corner. One unit more makes an even one odd, so that none
+        // is 0, where a triangle of less than a pixel reaches very far.
         let whole = (whole as i32).clamp(0, WHOLE - 1) as u32 | 1;
         let zeros = whole.leading_zeros() & 31;
         let inverse = recip(whole << zeros) as i32;
@@ -309,7 +310,7 @@ mod tests {
         /// In words, too, coordinates are quotients, up to the bits that the numerators have, and no place beside a triangle is far off.
         #[test]
         fn coordinates_in_words_are_quotients(
-            whole in prop_oneof![1i64..ONE, 1i64..100, ONE - 50..ONE + 50],
+            whole in prop_oneof![1i64 << 12..ONE, 1i64 << 12..1 << 13, ONE - 50..ONE + 50],
             s in 0.0f64..=1.0,
             t in 0.0f64..=1.0,
             off in prop::array::uniform2(-3i64..=3),

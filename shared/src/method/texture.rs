@@ -580,18 +580,18 @@ impl<C: Pixel> PixelShader<(Colour, ([u32; 1], [u32; 1]))> for GrayTexels<'_, C>
 }
 
 /// A place in a texture, alone or with what is interpolated beside it.
-pub trait Place {
-    /// The texel in the stead of the place.
+pub trait AtPlace {
+    /// The texel, and what is beside the place.
     type Texel;
 
-    /// Takes the texel from `sampler`. Bits of a place may be `aligned` already.
+    /// Takes the texel from `sampler`. The bits of the place stand where the sampler needs them if it is `aligned`.
     fn texel(self, sampler: &Sampler<'_>, aligned: bool) -> Self::Texel;
 
     /// The colour of a texel.
     fn colour(texel: &Self::Texel) -> Colour;
 }
 
-impl Place for [u32; 2] {
+impl AtPlace for [u32; 2] {
     type Texel = Colour;
 
     #[inline(always)]
@@ -605,7 +605,7 @@ impl Place for [u32; 2] {
     }
 }
 
-impl<V> Place for ([u32; 2], V) {
+impl<V> AtPlace for ([u32; 2], V) {
     type Texel = (Colour, V);
 
     #[inline(always)]
@@ -620,16 +620,16 @@ impl<V> Place for ([u32; 2], V) {
     }
 }
 
-/// A [`Place`] that is walked. Where the texture has a hole, the surface covers no pixel.
+/// A place that is walked, see [`AtPlace`]. Where the texture has a hole, the surface covers no pixel.
 #[derive(Clone, Copy, Debug)]
 pub struct Placed<'f, P, const ALIGNED: bool = false> {
-    /// The place, whose bits already stand where the sampler cuts the number of a texel from them, or are moved there at each pixel.
+    /// The place, and what is beside it. Its bits already stand where the sampler cuts the number of a texel from them, or are moved there at each pixel.
     pub place: P,
     /// The texture.
     pub sampler: &'f Sampler<'f>,
 }
 
-impl<'f, P: Patch<Walker: Walker<Value: Place>>, const ALIGNED: bool> Patch for Placed<'f, P, ALIGNED> {
+impl<'f, P: Patch<Walker: Walker<Value: AtPlace>>, const ALIGNED: bool> Patch for Placed<'f, P, ALIGNED> {
     type Walker = Placed<'f, P::Walker, ALIGNED>;
 
     #[inline(always)]
@@ -651,8 +651,8 @@ impl<'f, P: Patch<Walker: Walker<Value: Place>>, const ALIGNED: bool> Patch for 
     const WORDS: usize = 1 << 8;
 }
 
-impl<W: Walker<Value: Place>, const ALIGNED: bool> Walker for Placed<'_, W, ALIGNED> {
-    type Value = <W::Value as Place>::Texel;
+impl<W: Walker<Value: AtPlace>, const ALIGNED: bool> Walker for Placed<'_, W, ALIGNED> {
+    type Value = <W::Value as AtPlace>::Texel;
 
     #[inline(always)]
     fn step(&mut self) {

@@ -9,7 +9,7 @@ pub trait ByRows: Copy {
     #[inline(always)]
     fn step_row(&mut self) {}
 
-    /// Takes back the last step of a copy, as far as copies share what is stepped.
+    /// Takes back the last step of another copy, as far as copies share what is stepped.
     #[inline(always)]
     fn take_back(&self) {}
 

@@ -43,7 +43,7 @@ impl Glass {
     }
 }
 
-/// The surface that is drawn, and room for a run of its pixels.
+/// The surface that is drawn, and room for a run of its pixels and for their depth.
 #[derive(Debug)]
 pub struct Sheet<C> {
     /// `None` if nothing is seen through it.
@@ -66,16 +66,16 @@ pub(crate) trait RunFiller<C> {
     /// Draws a run of the coming row to its room, and steps to the next row if the run `is_last`.
     fn fill_run(&mut self, run: LeftRight, is_last: bool);
 
-    /// Moves down by so many rows to the first one, which is `row` of the picture.
-    fn start_at(&mut self, row: i32, rows: i32);
+    /// Moves the polynomial `down` by so many rows, and everything that differs between even and odd rows to `row` of the picture.
+    fn start_at(&mut self, row: i32, down: i32);
 
-    /// Saves the triangle `key` for the next band, to whose first row its two sides have been stepped.
+    /// Saves the triangle with this key and these sides for the next band, on whose first row `pair` stands.
     fn save(&self, triangle: (u32, &EdgeWalker), pair: LeftRight, active: &mut ActiveTriangles<'_>);
 }
 
 /// A band behind a transparent surface.
 pub(crate) struct Behind<'b, 'a, C> {
-    /// The surface's glass.
+    /// How the surface lets through what is behind it.
     pub(crate) glass: Glass,
     /// The pixels of the band.
     pub(crate) pixels: &'b mut [C],
@@ -90,14 +90,14 @@ pub(crate) struct Behind<'b, 'a, C> {
 }
 
 impl<C: Pixel> Behind<'_, '_, C> {
-    /// Draws the surface between the two sides of the coming row.
+    /// Draws the surface between the two sides of the coming row, and moves to the next one.
     pub(crate) fn cover(&mut self, surface: &mut dyn RunFiller<C>, sides: LeftRight) {
         let [left, mut end] = [sides.left, sides.right].map(|side| (side.x >> COLUMN) as usize);
         loop {
             let first = end.saturating_sub(RUN).max(left);
             let is_last = first == left;
             let at = self.start.wrapping_add(first)..self.start.wrapping_add(end);
-            let depth = self.depth.and_then(|depth| depth.get(at.clone()));
+            let depth = self.depth.map(|depth| depth.get(at.clone()).unwrap_or_default());
             if let Some(depth) = depth {
                 let (_, copy) = surface.run();
                 copy.iter_mut().zip(depth).for_each(|(to, &from)| *to = from);

@@ -55,7 +55,7 @@ impl RowRange {
 
 /// The state that steps from row to row.
 pub(crate) struct Rows<'b, D, P: Patch, T: PixelShader<<P::Walker as Walker>::Value>> {
-    /// Pixels and depth buffer of the band, `width` of each in a row.
+    /// Pixels and depth buffer of the band, `width` of each in a row, or the room for a run, see [`RunFiller`].
     pub(crate) pixels: &'b mut [T::Pixel],
     pub(crate) buffer: &'b mut [u16],
     pub(crate) width: usize,
@@ -285,7 +285,7 @@ impl<'f> ScreenTriangle<'f> {
         )
     }
 
-    /// Draws the rows of a transparent surface, which stands on the anchor's row.
+    /// Draws the rows of a transparent surface. The depth stands on the first row, and the polynomial of a triangle that is not resumed on the anchor's.
     #[inline(never)]
     fn fill_glass<C: Pixel>(&self, gradients: &Gradients, surface: &mut dyn RunFiller<C>, behind: &mut Behind<'_, '_, C>) -> u32 {
         let RowRange { sides, key, resumed, .. } = &self.rows;
@@ -492,7 +492,7 @@ impl<D: Patch<Walker: DepthTest>, P: Patch, T: PixelShader<<P::Walker as Walker>
     }
 
     fn fill_run(&mut self, run: LeftRight, is_last: bool) {
-        let row = (!is_last).then_some((self.depth, self.patch, self.shader));
+        let row = if is_last { None } else { Some((self.depth, self.patch, self.shader)) };
         (self.start, self.sides, self.count, self.height) = (((run.left.x >> COLUMN) as usize).wrapping_neg(), run, run.columns(), 1);
         fill_rows(self);
         if let Some(row) = row {
@@ -501,9 +501,9 @@ impl<D: Patch<Walker: DepthTest>, P: Patch, T: PixelShader<<P::Walker as Walker>
         }
     }
 
-    fn start_at(&mut self, row: i32, rows: i32) {
-        if rows != 0 {
-            self.patch.jump(rows);
+    fn start_at(&mut self, row: i32, down: i32) {
+        if down != 0 {
+            self.patch.jump(down);
         }
         self.shader.start_at(row);
     }
