@@ -264,8 +264,8 @@ impl Point {
     #[inline(always)]
     fn in_words(s: u32, t: u32, whole: u32) -> Self {
         const WHOLE: i32 = ONE as i32;
-        // The denominator is less than 1, but rounding may let it reach 1 beside the nearest corner. One unit more makes an even one odd, so that none
-        // is 0, where a triangle of less than a pixel reaches very far.
+        // The denominator is less than 1, but rounding may let it reach 1 beside the nearest corner. An even one becomes odd, because 0 has no
+        // reciprocal: in a triangle of less than a pixel it may be that small.
         let whole = (whole as i32).clamp(0, WHOLE - 1) as u32 | 1;
         let zeros = whole.leading_zeros() & 31;
         let inverse = recip(whole << zeros) as i32;
@@ -323,8 +323,9 @@ mod tests {
             prop_assert!(at_a >= 0 && at_s >= 0 && at_t >= 0);
             let exact = |part: i64| (part as f64 / whole as f64).clamp(0.0, 1.0);
             let off = |at: i32, exact: f64| (f64::from(at) / ONE as f64 - exact).abs();
-            // The denominator is odd, and so off by a unit; so far beyond 1 it counts as 1.
-            let bound = 54.0 / whole as f64 * if whole < ONE { 1.0 / 54.0 } else { 1.0 } + 2f64.powi(-26);
+            // The denominator becomes odd, and so is off by a unit. From 1 on it counts as less than 1, and is off by up to 50 units, and a few of rounding.
+            let units = if whole < ONE { 1.0 } else { 54.0 };
+            let bound = units / whole as f64 + 2f64.powi(-26);
             prop_assert!(off(at_s, exact(s)) <= bound, "{} {}", at_s, exact(s));
             prop_assert!(off(at_t, exact(t).min(1.0 - exact(s))) <= 2.0 * bound, "{} {}", at_t, exact(t));
         }
