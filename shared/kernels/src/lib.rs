@@ -2,7 +2,7 @@
 //!
 //! A kernel fills the rows of a triangle between a left and a right side that are stepped from row to row, from right to left in each row, with or
 //! without a depth test. A compiler keeps much of the state of such loops in memory and loads it word by word. The kernels load the state of a row by
-//! one instruction, step all of it, and store it by one instruction.
+//! one instruction or by a few, step all of it, and store it likewise.
 //!
 //! This is the only crate of the library with `unsafe` code. [`Rows`] are checked once for each call: all of them lie within the slices. A
 //! kernel compares the right side with the width in each row. So whatever the sides are, it reads and writes nothing else. On processors without
@@ -269,8 +269,8 @@ pub fn channels<const FORMAT: u8>(rows: Rows<'_>, depth: &mut Plane, levels: &mu
     })
 }
 
-/// Halves of reciprocal roots, Q2.30, by the upper 11 bits of a square: the value in the upper 22 bits of an entry, and how much it falls in 1/1024 of the
-/// way to the next entry in the lower 10 bits.
+/// Halves of reciprocal roots, Q2.30, by the upper 11 bits of a square. The lower 10 bits of an entry are also a number of their own: how much the value falls
+/// in 1/1024 of the way to the next entry.
 pub type Roots = [u32; 2048];
 
 /// Highlights, by their place in steps of the table.
@@ -309,7 +309,7 @@ impl Fields<'_> {
     /// Whether there are a square and so many numerators.
     #[inline(always)]
     fn has(&self, numerators: usize) -> bool {
-        // Written out, it is decided when the program is compiled.
+        // The test has no loop, so that the compiler decides it.
         let [a, b, c, d] = &self.planes;
         let is_lent = |plane: &Option<&mut Plane>, number| plane.is_some() || numerators < number;
         self.square.is_some() && is_lent(a, 1) && is_lent(b, 2) && is_lent(c, 3) && is_lent(d, 4)
@@ -329,10 +329,10 @@ impl LitJob {
     }
 }
 
-/// Fills `rows` by numerators over the root of a square, with a depth test. The quotients are levels of light with 19 fraction bits; a cosine of 1 is the
-/// level 2^7. For each light of which there is a highlight, the first of two if there is one, a second numerator follows, whose quotient is a place in the
-/// table of highlights. `sums` has colours for the first row and for the second, in turn. `FORMAT` is a [`Format`] as a number. Returns what [`ramp`] does;
-/// `None` also if fields or highlights are missing.
+/// Fills `rows` by numerators over the root of a square, with a depth test, under one light or two. The numerator of a light comes first. Its quotient is a
+/// level with 19 fraction bits, and a cosine of 1 is the level 2^7. If the light has a highlight, the numerator of the highlight follows. Its quotient is a
+/// place in the table of highlights. If only one of two lights has a highlight, it is the first. `sums` has colours for the first row and for the second,
+/// in turn. `FORMAT` is a [`Format`] as a number. Returns what [`ramp`] does. It is also `None` if fields or highlights are missing.
 #[inline(always)]
 #[must_use]
 pub fn lit<const FORMAT: u8, const LIGHTS: usize, const HIGHLIGHTS: usize>(
@@ -342,7 +342,7 @@ pub fn lit<const FORMAT: u8, const LIGHTS: usize, const HIGHLIGHTS: usize>(
     lookup: Lookup<'_>,
     sums: [&[Sums; LIGHTS]; 2],
 ) -> Option<u32> {
-    const { assert!(FORMAT <= Format::Swapped as u8 && HIGHLIGHTS <= LIGHTS) };
+    const { assert!(FORMAT <= Format::Swapped as u8 && (LIGHTS == 1 || LIGHTS == 2) && HIGHLIGHTS <= LIGHTS) };
     #[cfg(kernels = "armv7m")]
     {
         let mut rows = rows;
@@ -370,9 +370,9 @@ pub fn lit<const FORMAT: u8, const LIGHTS: usize, const HIGHLIGHTS: usize>(
     }
 }
 
-/// Fills `rows` as [`lit`] does, under one light of one channel. Its level is at least 0. The level of ambient light is added to it, or the entry of the table
-/// of highlights, from the 13th bit on. The upper 9 of 28 bits of the sum are the index of a colour in `ramps`, which are for the first row and for
-/// the second, in turn. Without highlights [`Lookup::top`] is the level of ambient light.
+/// Fills `rows` as [`lit`] does, under one light of one channel. A negative level counts as 0. With a highlight, 2^12 times the entry of the table is added to
+/// the level; entries include ambient light. Without one, [`Lookup::top`] is added, which is the level of ambient light. Bits 19 to 27 of the sum are the
+/// index of a colour in `ramps`, which are for the first row and for the second, in turn.
 #[inline(always)]
 #[must_use]
 pub fn lit_ramp<const HIGHLIGHTS: usize>(
@@ -382,6 +382,7 @@ pub fn lit_ramp<const HIGHLIGHTS: usize>(
     lookup: Lookup<'_>,
     ramps: [&[u16; 512]; 2],
 ) -> Option<u32> {
+    const { assert!(HIGHLIGHTS <= 1) };
     #[cfg(kernels = "armv7m")]
     {
         let mut rows = rows;

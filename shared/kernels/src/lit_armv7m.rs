@@ -1,8 +1,8 @@
 //! Kernels that compute light at each pixel, for processors with the whole of Thumb-2.
 //!
-//! The state of a triangle lies on the stack: the polynomials of the row, constants, what changes from row to row and by how much, and the line that is
-//! a side below the turn. A number counts the pixels of a row down to 1. It is also the argument of the polynomials, which are evaluated only where the
-//! depth test is passed, so that a hidden pixel takes six instructions.
+//! The state of a triangle lies on the stack: the polynomials of the row, constants, what changes from row to row, its steps, and the line that is a side
+//! below the turn. `r10` counts the pixels of a row down to 1. The polynomials are functions of this count. They are evaluated only at pixels that pass the
+//! depth test, so a hidden pixel takes six instructions.
 
 use crate::{COUNTED, Fields, Format, LitJob, Plane, Sides};
 use core::arch::naked_asm;
@@ -36,7 +36,7 @@ macro_rules! quotient {
     };
 }
 
-/// Looks up the highlight of the quotient in `$highlight`, of which `$top` is the place of a whole one. `r9` has the table.
+/// Replaces the quotient in `$highlight` by the highlight. `$top` is the place of a whole highlight in the table, and `r9` is the address of the table.
 macro_rules! highlight {
     ($highlight:literal, $top:literal) => {
         concat!(
@@ -81,7 +81,8 @@ macro_rules! pack {
 
 /// Defines a kernel for a number of numerators. `$pixel` makes the pixel of number `r10` and stores it at `[r0, r10, lsl #1]`. It finds half the reciprocal
 /// length in `r3`, the place in the table of highlights in `r8`, this table in `r9`, the colours of the row in `r12`, and the table of roots in
-/// `lr`. It keeps all of them but `r3`, unless `$reload` loads again before each pixel what it overwrites. It may use `r4` to `r7`.
+/// `lr`. It may overwrite `r3` to `r7`. If it overwrites `r9` or `lr`, `$reload` loads them again before each pixel. If it overwrites `r8`, it loads `r8`
+/// itself before it uses it.
 macro_rules! kernel {
     ($(#[$doc:meta])* $name:ident $(<$format:ident>)?, $planes:literal, $reload:expr, $pixel:expr) => {
         $(#[$doc])*
@@ -373,7 +374,7 @@ macro_rules! colour {
 }
 
 kernel!(
-    /// One light, by a table of colours. The place in the table of highlights is the level of ambient light.
+    /// One light, by a table of colours. `r8` is the level of ambient light here.
     level,
     1,
     "",

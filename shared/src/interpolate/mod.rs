@@ -46,10 +46,11 @@ pub trait Patch: Copy {
         false
     }
 
-    /// How many planes it consists of, and then how many quadratics, for kernels; `None` if it consists of others, or in another order.
+    /// The number of planes and the number of quadratics, for kernels. Planes come first. It is `None` if the polynomial has other parts or another order; no
+    /// kernel draws it then.
     const FIELDS: Option<[usize; 2]> = None;
 
-    /// The planes of which the polynomial consists, if it has no quadratics.
+    /// The planes of a polynomial that is one field of planes. Others return none.
     #[inline(always)]
     fn planes(&mut self) -> &mut [microphong_kernels::Plane] {
         &mut []

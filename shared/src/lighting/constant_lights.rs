@@ -114,10 +114,10 @@ pub trait Shades<L>: LitColours {
 /// Fraction bits of the diffuse levels of kernels.
 pub(crate) const KERNEL_BITS: u32 = 19;
 
-// What kernels know about numbers.
+// Kernels contain these numbers as constants.
 const _: () = assert!(KERNEL_BITS + FULL_BITS - FACTOR == 11 && CHANNEL == 22 && LEVEL == 7);
 
-/// A light that is [`WithHighlight`], or without one.
+/// A light whose type tells whether it has a highlight.
 pub trait MayHaveHighlight: Into<WithHighlight> {
     /// 1 if it has a highlight.
     const HIGHLIGHTS: usize;
@@ -661,7 +661,7 @@ impl<C: Pixel, A: MayHaveHighlight, B: MayHaveHighlight> Shades<(A, B)> for TwoL
         C::mixed([level(r, r2), in_turn(g, g2), level(b, b2)])
     }
 
-    const NUMERATORS: usize = 2 + A::HIGHLIGHTS + B::HIGHLIGHTS;
+    const NUMERATORS: usize = if A::HIGHLIGHTS < B::HIGHLIGHTS { 0 } else { 2 + A::HIGHLIGHTS + B::HIGHLIGHTS };
 
     #[inline(always)]
     fn fill(

@@ -35,7 +35,7 @@ impl<'a> QuotientLookup<'a> {
         Self { table: &lut.table, top: ((lut.scale << 7 << STEP) + (1 << (STEP - 1))) as i32, factor: (lut.scale << 16) as i32 }
     }
 
-    /// The lookup in kernels, where lengths are those of `roots`.
+    /// What a kernel needs for this lookup. It reads reciprocal lengths from `roots`.
     #[inline(always)]
     pub(crate) fn in_kernels(&self, roots: &'a HalfRsqrt) -> Lookup<'a> {
         const { assert!(STEP == 8) };

@@ -376,8 +376,8 @@ impl<'f> ScreenTriangle<'f> {
         }
     }
 
-    /// [`Self::fill_by_kernel`] if sides are computed again for some rows. `fill` fills a part of the rows, of which the first is an odd one counted from
-    /// the first row of all, or not.
+    /// [`Self::fill_by_kernel`] if sides are computed again for some rows. `fill` gets a part of the rows. Its last argument is true if an odd number of rows
+    /// lies above this part.
     #[cold]
     #[inline(never)]
     fn fill_parts<C: Pixel>(&self, pair: &mut LeftRight, band: &mut Band<'_, C>, fill: &mut FillPart<'_, C>) -> u32 {

@@ -5,7 +5,7 @@
 
 use crate::{
     interpolate::Patch,
-    lighting::constant_lights::{Coloured, Shades, SurfaceColour},
+    lighting::constant_lights::{Coloured, KERNEL_BITS, Shades, SurfaceColour},
     pixel::{Pixel, by_rows::ByRows},
     raster::pixel_shader::PixelShader,
 };
@@ -25,7 +25,8 @@ pub(super) trait AtPixel<V>: Copy {
     /// Divides walked values into what all lights have in common and the values of the lights.
     fn at(&self, value: V) -> (Self::Common, Self::Values);
 
-    /// Whether values are numerators over the root of a square, which kernels in assembler know.
+    /// Whether the values are planes that are divided by the root of a quadratic: that of each light, and that of its highlight if it has one. Kernels in assembler
+    /// compute this.
     const IS_QUOTIENT: bool = false;
 
     /// Where kernels look up light.
@@ -102,11 +103,12 @@ impl<V, T: Shades<L>, K: AtPixel<V>, L: FromValues<K::Common, K::Values>> PixelS
         self.colours.colour(K::BITS, L::from_values(&common, self.colours.diffuse(), values))
     }
 
-    const KERNEL: Option<[usize; 2]> = if kernels::LIT_AVAILABLE && T::Pixel::HAS_KERNELS && K::IS_QUOTIENT && T::NUMERATORS > 0 {
-        Some([T::NUMERATORS, 1])
-    } else {
-        None
-    };
+    const KERNEL: Option<[usize; 2]> =
+        if kernels::LIT_AVAILABLE && T::Pixel::HAS_KERNELS && K::IS_QUOTIENT && K::BITS == KERNEL_BITS && T::NUMERATORS > 0 {
+            Some([T::NUMERATORS, 1])
+        } else {
+            None
+        };
 
     #[inline(always)]
     fn fill<P: Patch>(&self, rows: kernels::Rows<'_>, depth: &mut [kernels::Plane], patch: &mut P) -> Option<u32> {
