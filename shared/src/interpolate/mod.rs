@@ -14,8 +14,6 @@ pub mod quadric;
 pub(crate) mod squares;
 pub mod wide_quadric;
 
-use microphong_kernels::Fields;
-
 /// A polynomial of one triangle, standing on one row.
 pub trait Patch: Copy {
     /// The walker along a span of that row.
@@ -46,19 +44,14 @@ pub trait Patch: Copy {
         false
     }
 
-    /// The number of planes and the number of quadratics, for kernels. Planes come first. It is `None` if the polynomial has other parts or another order; no
-    /// kernel draws it then.
-    const FIELDS: Option<[usize; 2]> = None;
+    /// Whether the polynomial is linear in each channel, or there is none, so that kernels walk it.
+    const IS_LINEAR: bool = false;
 
-    /// The planes of a polynomial that is one field of planes. Others return none.
+    /// The planes of which the polynomial consists, if it [`Self::IS_LINEAR`].
     #[inline(always)]
     fn planes(&mut self) -> &mut [microphong_kernels::Plane] {
         &mut []
     }
-
-    /// Lends its planes to a kernel as numerators, from number `first` on, and its quadratic as the square.
-    #[inline(always)]
-    fn lend<'a>(&'a mut self, _fields: &mut Fields<'a>, _first: usize) {}
 
     /// The polynomial that has been saved in `words`.
     #[inline(always)]
@@ -144,7 +137,7 @@ impl Patch for Constant {
         Some(Self)
     }
 
-    const FIELDS: Option<[usize; 2]> = Some([0, 0]);
+    const IS_LINEAR: bool = true;
 }
 
 impl Walker for Constant {
@@ -177,17 +170,6 @@ impl<A: Patch, B: Patch> Patch for (A, B) {
     }
 
     const WORDS: usize = A::WORDS + B::WORDS;
-
-    const FIELDS: Option<[usize; 2]> = match (A::FIELDS, B::FIELDS) {
-        (Some([planes, 0]), Some([more, quadratics])) => Some([planes + more, quadratics]),
-        _ => None,
-    };
-
-    #[inline(always)]
-    fn lend<'a>(&'a mut self, fields: &mut Fields<'a>, first: usize) {
-        self.0.lend(fields, first);
-        self.1.lend(fields, first + A::FIELDS.map_or(0, |[planes, _]| planes));
-    }
 
     #[inline(always)]
     fn save(&self, words: &mut [u32]) -> bool {
