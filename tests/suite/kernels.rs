@@ -2,8 +2,8 @@
 
 use std::{path::Path, process::Command};
 
-/// Runs the comparison on this machine of QEMU.
-fn compare(target: &str, machine: &str) {
+/// Runs the comparison of so many cases on this machine of QEMU.
+fn compare(target: &str, machine: &str, cases: u32) {
     let firmware = Path::new(env!("CARGO_MANIFEST_DIR")).join("../firmware");
     let built = Command::new(env!("CARGO"))
         .current_dir(&firmware)
@@ -24,20 +24,20 @@ fn compare(target: &str, machine: &str) {
     let said = String::from_utf8_lossy(&output.stdout);
     println!("{machine}: {said}");
     let failed = String::from_utf8_lossy(&output.stderr);
-    assert!(output.status.success() && said.starts_with("140000 cases of "), "{machine}: {said}{failed}");
+    assert!(output.status.success() && said.starts_with(&format!("{cases} cases of ")), "{machine}: {said}{failed}");
 }
 
 #[test]
 fn those_of_armv6m_store_what_loops_do() {
-    compare("thumbv6m-none-eabi", "microbit");
+    compare("thumbv6m-none-eabi", "microbit", 140_000);
 }
 
 #[test]
 fn those_of_armv7m_store_what_loops_do() {
-    compare("thumbv7m-none-eabi", "mps2-an385");
+    compare("thumbv7m-none-eabi", "mps2-an385", 230_000);
 }
 
 #[test]
 fn those_of_armv7m_run_on_armv8m() {
-    compare("thumbv8m.main-none-eabihf", "mps2-an505");
+    compare("thumbv8m.main-none-eabihf", "mps2-an505", 230_000);
 }

@@ -69,8 +69,9 @@ pub(super) enum Part {
 
 /// Parts of functions by what their names contain; the first that fits counts. Names as the compiler writes them, so that this
 /// is the one place to follow when functions move.
-const TABLE: [(&str, Part); 38] = [
+const TABLE: [(&str, Part); 39] = [
     ("microphong_kernels::processor::", Part::Row),
+    ("microphong_kernels::lit::", Part::Row),
     ("microphong::raster::triangle::fill_rows", Part::Row),
     ("as microphong::raster::canvas::SpanShader::span", Part::Row),
     ("microphong::raster::band::Band::clear", Part::Clear),

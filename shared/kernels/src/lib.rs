@@ -2,7 +2,7 @@
 //!
 //! A kernel fills the rows of a triangle between a left and a right side that are stepped from row to row, from right to left in each row, with or
 //! without a depth test. A compiler keeps much of the state of such loops in memory and loads it word by word. The kernels load the state of a row by
-//! one instruction, step all of it, and store it by one instruction.
+//! one instruction or by a few, step all of it, and store it likewise.
 //!
 //! This is the only crate of the library with `unsafe` code. [`Rows`] are checked once for each call: all of them lie within the slices. A
 //! kernel compares the right side with the width in each row. So whatever the sides are, it reads and writes nothing else. On processors without
@@ -16,10 +16,17 @@
 #[cfg(kernels)]
 mod processor;
 
+#[cfg(kernels = "armv7m")]
+#[path = "lit_armv7m.rs"]
+mod lit;
+
 use embedded_graphics_core::pixelcolor::{Bgr565, Rgb565};
 
 /// Whether there are kernels for the processor that is compiled for.
 pub const AVAILABLE: bool = cfg!(kernels);
+
+/// Whether [`lit`] and [`lit_ramp`] are among them.
+pub const LIT_AVAILABLE: bool = cfg!(kernels = "armv7m");
 
 /// The left side of a triangle and then the right one: each the column of the coming row, unsigned Q11.21, and what is added to it for the next row.
 pub type Sides = [u32; 4];
@@ -157,6 +164,23 @@ struct Job<T> {
     lines: Lines,
 }
 
+/// What [`lit`] and [`lit_ramp`] read besides sides, depth and fields.
+#[cfg(kernels = "armv7m")]
+#[repr(C)]
+struct LitJob {
+    /// For the first row and for the second.
+    colours: [*const (); 2],
+    roots: *const u32,
+    highlights: *const u16,
+    /// The place of a whole highlight in their table; for a table of colours without highlights, the level of ambient light.
+    top: i32,
+    width: usize,
+    /// Rows above the turn, from bit [`COUNTED`] on.
+    count: u32,
+    pitch: usize,
+    lines: Lines,
+}
+
 /// What [`channels`] reads besides sides and planes.
 #[cfg(kernels)]
 #[repr(C)]
@@ -243,4 +267,141 @@ pub fn channels<const FORMAT: u8>(rows: Rows<'_>, depth: &mut Plane, levels: &mu
         // SAFETY: all rows lie within both slices, whose addresses are exposed, and columns are compared with the width.
         unsafe { processor::channels::<FORMAT>(rows.sides, depth, levels, &job) }
     })
+}
+
+/// Halves of reciprocal roots, Q2.30, by the upper 11 bits of a square. The lower 10 bits of an entry are also a number of their own: how much the value falls
+/// in 1/1024 of the way to the next entry.
+pub type Roots = [u32; 2048];
+
+/// Highlights, by their place in steps of the table.
+pub type Highlights = [u16; 4097];
+
+/// Levels of one light in red, green and blue: ambient light with 22 fraction bits, and the factors of a cosine, Q1.15, and of a highlight.
+pub type Sums = [[i32; 3]; 3];
+
+/// Where light at a pixel is looked up.
+#[derive(Clone, Copy, Debug)]
+pub struct Lookup<'a> {
+    /// Half the reciprocal length of a normal by its square.
+    pub roots: &'a Roots,
+    /// Highlights, if the material has any.
+    pub highlights: Option<&'a Highlights>,
+    /// The place where a highlight is whole, with 8 fraction bits, from which a quotient is subtracted.
+    pub top: i32,
+}
+
+/// A quadratic field: its value at column 0 of the coming row, its step to the next row, the step of that step, its slope, the step of the slope to the
+/// next row, and half its bend. All sums and products wrap.
+pub type Quadric = [i32; 6];
+
+/// Linear numerators in their order, and the quadratic square of the length by which they are divided.
+#[derive(Debug, Default)]
+#[repr(C)]
+pub struct Fields<'a> {
+    /// The numerators.
+    pub planes: [Option<&'a mut Plane>; 4],
+    /// The square.
+    pub square: Option<&'a mut Quadric>,
+}
+
+#[cfg(kernels = "armv7m")]
+impl Fields<'_> {
+    /// Whether there are a square and so many numerators.
+    #[inline(always)]
+    fn has(&self, numerators: usize) -> bool {
+        // The test has no loop, so that the compiler decides it.
+        let [a, b, c, d] = &self.planes;
+        let is_lent = |plane: &Option<&mut Plane>, number| plane.is_some() || numerators < number;
+        self.square.is_some() && is_lent(a, 1) && is_lent(b, 2) && is_lent(c, 3) && is_lent(d, 4)
+    }
+}
+
+#[cfg(kernels = "armv7m")]
+impl LitJob {
+    /// What a kernel reads; `None` if rows do not lie within the slices.
+    #[inline(always)]
+    fn new<T>(rows: &mut Rows<'_>, lookup: Lookup<'_>, colours: [*const T; 2]) -> Option<Self> {
+        let lines = rows.lines(true)?;
+        let Lookup { roots, highlights, top } = lookup;
+        let highlights = highlights.map_or(core::ptr::null(), |table| table.as_ptr());
+        let (width, count) = (rows.width, rows.height << COUNTED);
+        Some(Self { colours: colours.map(<*const T>::cast), roots: roots.as_ptr(), highlights, top, width, count, pitch: 2 * width, lines })
+    }
+}
+
+/// Fills `rows` by numerators over the root of a square, with a depth test, under one light or two. The numerator of a light comes first. Its quotient is a
+/// level with 19 fraction bits, and a cosine of 1 is the level 2^7. If the light has a highlight, the numerator of the highlight follows. Its quotient is a
+/// place in the table of highlights. If only one of two lights has a highlight, it is the first. `sums` has colours for the first row and for the second,
+/// in turn. `FORMAT` is a [`Format`] as a number. Returns what [`ramp`] does. It is also `None` if fields or highlights are missing.
+#[inline(always)]
+#[must_use]
+pub fn lit<const FORMAT: u8, const LIGHTS: usize, const HIGHLIGHTS: usize>(
+    rows: Rows<'_>,
+    depth: &mut Plane,
+    mut fields: Fields<'_>,
+    lookup: Lookup<'_>,
+    sums: [&[Sums; LIGHTS]; 2],
+) -> Option<u32> {
+    const { assert!(FORMAT <= Format::Swapped as u8 && (LIGHTS == 1 || LIGHTS == 2) && HIGHLIGHTS <= LIGHTS) };
+    #[cfg(kernels = "armv7m")]
+    {
+        let mut rows = rows;
+        if !fields.has(LIGHTS + HIGHLIGHTS) || HIGHLIGHTS > 0 && lookup.highlights.is_none() {
+            return None;
+        }
+        let Some(job) = LitJob::new(&mut rows, lookup, sums.map(core::ptr::from_ref)) else { return Some(0) };
+        // SAFETY: all rows lie within both slices, whose addresses are exposed, and columns are compared with the width; an index of 11 bits lies within the
+        // roots, and one of 12 bits within the highlights; there are all fields that the kernel steps, and factors of all lights.
+        unsafe {
+            Some(match (LIGHTS, HIGHLIGHTS) {
+                (1, 0) => lit::light::<FORMAT>(rows.sides, depth, &mut fields, &job),
+                (1, 1) => lit::light_and_highlight::<FORMAT>(rows.sides, depth, &mut fields, &job),
+                (2, 0) => lit::lights::<FORMAT>(rows.sides, depth, &mut fields, &job),
+                (2, 1) => lit::lights_and_highlight::<FORMAT>(rows.sides, depth, &mut fields, &job),
+                (2, 2) => lit::lights_and_highlights::<FORMAT>(rows.sides, depth, &mut fields, &job),
+                _ => return None,
+            })
+        }
+    }
+    #[cfg(not(kernels = "armv7m"))]
+    {
+        let _ = (rows, depth, &mut fields, lookup, sums);
+        None
+    }
+}
+
+/// Fills `rows` as [`lit`] does, under one light of one channel. A negative level counts as 0. With a highlight, 2^12 times the entry of the table is added to
+/// the level; entries include ambient light. Without one, [`Lookup::top`] is added, which is the level of ambient light. Bits 19 to 27 of the sum are the
+/// index of a colour in `ramps`, which are for the first row and for the second, in turn.
+#[inline(always)]
+#[must_use]
+pub fn lit_ramp<const HIGHLIGHTS: usize>(
+    rows: Rows<'_>,
+    depth: &mut Plane,
+    mut fields: Fields<'_>,
+    lookup: Lookup<'_>,
+    ramps: [&[u16; 512]; 2],
+) -> Option<u32> {
+    const { assert!(HIGHLIGHTS <= 1) };
+    #[cfg(kernels = "armv7m")]
+    {
+        let mut rows = rows;
+        if !fields.has(1 + HIGHLIGHTS) || HIGHLIGHTS > 0 && lookup.highlights.is_none() {
+            return None;
+        }
+        let Some(job) = LitJob::new(&mut rows, lookup, ramps.map(|ramp| ramp.as_ptr())) else { return Some(0) };
+        // SAFETY: as in `lit`; an index of 9 bits lies within a table of colours.
+        unsafe {
+            Some(if HIGHLIGHTS == 0 {
+                lit::level(rows.sides, depth, &mut fields, &job)
+            } else {
+                lit::level_and_highlight(rows.sides, depth, &mut fields, &job)
+            })
+        }
+    }
+    #[cfg(not(kernels = "armv7m"))]
+    {
+        let _ = (rows, depth, &mut fields, lookup, ramps);
+        None
+    }
 }

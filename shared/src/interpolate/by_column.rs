@@ -5,6 +5,7 @@ use crate::{
     interpolate::{Patch, Walker},
 };
 use core::hint::black_box;
+use microphong_kernels::{Fields, Plane};
 
 /// Whether evaluation is faster than stepping through all columns. By measurement it is where a product and a sum are one instruction. On a Cortex-M3
 /// a value that is stepped in memory takes four instructions for a plane and seven for a quadratic, at every pixel of a span. Evaluation takes two
@@ -39,6 +40,18 @@ impl<P: Patch<Walker: Copy>> Patch for ByColumn<P> {
     }
 
     const WORDS: usize = P::WORDS;
+
+    const FIELDS: Option<[usize; 2]> = P::FIELDS;
+
+    #[inline(always)]
+    fn planes(&mut self) -> &mut [Plane] {
+        self.0.planes()
+    }
+
+    #[inline(always)]
+    fn lend<'a>(&'a mut self, fields: &mut Fields<'a>, first: usize) {
+        self.0.lend(fields, first);
+    }
 
     #[inline(always)]
     fn save(&self, words: &mut [u32]) -> bool {

@@ -14,6 +14,8 @@ pub mod quadric;
 pub(crate) mod squares;
 pub mod wide_quadric;
 
+use microphong_kernels::Fields;
+
 /// A polynomial of one triangle, standing on one row.
 pub trait Patch: Copy {
     /// The walker along a span of that row.
@@ -44,14 +46,19 @@ pub trait Patch: Copy {
         false
     }
 
-    /// Whether the polynomial is linear in each channel, or there is none, so that kernels walk it.
-    const IS_LINEAR: bool = false;
+    /// The number of planes and the number of quadratics, for kernels. Planes come first. It is `None` if the polynomial has other parts or another order; no
+    /// kernel draws it then.
+    const FIELDS: Option<[usize; 2]> = None;
 
-    /// The planes of which the polynomial consists, if it [`Self::IS_LINEAR`].
+    /// The planes of a polynomial that is one field of planes. Others return none.
     #[inline(always)]
     fn planes(&mut self) -> &mut [microphong_kernels::Plane] {
         &mut []
     }
+
+    /// Lends its planes to a kernel as numerators, from number `first` on, and its quadratic as the square.
+    #[inline(always)]
+    fn lend<'a>(&'a mut self, _fields: &mut Fields<'a>, _first: usize) {}
 
     /// The polynomial that has been saved in `words`.
     #[inline(always)]
@@ -137,7 +144,7 @@ impl Patch for Constant {
         Some(Self)
     }
 
-    const IS_LINEAR: bool = true;
+    const FIELDS: Option<[usize; 2]> = Some([0, 0]);
 }
 
 impl Walker for Constant {
@@ -170,6 +177,17 @@ impl<A: Patch, B: Patch> Patch for (A, B) {
     }
 
     const WORDS: usize = A::WORDS + B::WORDS;
+
+    const FIELDS: Option<[usize; 2]> = match (A::FIELDS, B::FIELDS) {
+        (Some([planes, 0]), Some([more, quadratics])) => Some([planes + more, quadratics]),
+        _ => None,
+    };
+
+    #[inline(always)]
+    fn lend<'a>(&'a mut self, fields: &mut Fields<'a>, first: usize) {
+        self.0.lend(fields, first);
+        self.1.lend(fields, first + A::FIELDS.map_or(0, |[planes, _]| planes));
+    }
 
     #[inline(always)]
     fn save(&self, words: &mut [u32]) -> bool {

@@ -1,5 +1,6 @@
 //! Linear fields.
 
+use microphong_kernels::Fields;
 use zerocopy::{FromBytes, Immutable, IntoBytes, KnownLayout};
 
 use crate::{
@@ -130,11 +131,18 @@ impl<const CH: usize> Patch for Plane<CH> {
 
     const WORDS: usize = 3 * CH;
 
-    const IS_LINEAR: bool = true;
+    const FIELDS: Option<[usize; 2]> = Some([CH, 0]);
 
     #[inline(always)]
     fn planes(&mut self) -> &mut [microphong_kernels::Plane] {
         <[microphong_kernels::Plane]>::mut_from_bytes(self.0.as_mut_bytes()).unwrap_or_default()
+    }
+
+    #[inline(always)]
+    fn lend<'a>(&'a mut self, fields: &mut Fields<'a>, first: usize) {
+        for (to, plane) in fields.planes.iter_mut().skip(first).zip(self.planes()) {
+            *to = Some(plane);
+        }
     }
 
     #[inline(always)]

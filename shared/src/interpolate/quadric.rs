@@ -4,6 +4,8 @@ use crate::{
     interpolate::{Checkerboard, HALF_RANGE, Patch, Walker, each_channel, plane::Plane},
     setup::{gradients::Gradients, word_sized::QUADRATIC},
 };
+use microphong_kernels::Fields;
+use zerocopy::{FromBytes, Immutable, IntoBytes, KnownLayout, transmute_mut};
 
 /// A quadratic function `c + dx x + dy y + dxx x² + dxy x y + dyy y²` in each of `CH` channels, standing on one row.
 #[derive(Clone, Copy, Debug)]
@@ -15,91 +17,80 @@ impl<const CH: usize> Default for Quadric<CH> {
     }
 }
 
-/// A number that wraps, so that sums and products are exact modulo its range.
-pub(super) trait Modular: Copy {
-    fn plus(self, other: Self) -> Self;
-    fn minus(self, other: Self) -> Self;
-    fn times(self, other: Self) -> Self;
-}
+/// Defines one channel, with x measured from column 0: the polynomial on one row, and how it changes from row to row. All arithmetic on its numbers wraps,
+/// so that it is exact modulo their range.
+macro_rules! quadric_row {
+    ($(#[$attribute:meta])* $name:ident, $number:ty) => {
+        $(#[$attribute])*
+        #[derive(Clone, Copy, Debug)]
+        #[repr(C)]
+        pub(super) struct $name {
+            /// Value at column 0.
+            c: $number,
+            /// First difference of `c` downwards, and its own difference.
+            c_down: $number,
+            c_down2: $number,
+            /// Coefficient of x, and its difference downwards.
+            dx: $number,
+            dx_down: $number,
+            /// Coefficient of x².
+            dxx: $number,
+        }
 
-macro_rules! modular {
-    ($($number:ty)*) => {$(
-        impl Modular for $number {
+        impl $name {
+            /// The polynomial with these coefficients at the column `x`, and `bias` added to its values.
             #[inline(always)]
-            fn plus(self, other: Self) -> Self {
-                self.wrapping_add(other)
+            pub(super) fn new([c, dx, dy, dxx, dxy, dyy]: [$number; 6], x: $number, bias: $number) -> Self {
+                // The move to column 0 is exact.
+                let bend = dxx.wrapping_mul(x);
+                Self {
+                    c: c.wrapping_sub(x.wrapping_mul(dx.wrapping_sub(bend))).wrapping_add(bias),
+                    c_down: dy.wrapping_add(dyy).wrapping_sub(dxy.wrapping_mul(x)),
+                    c_down2: dyy.wrapping_add(dyy),
+                    dx: dx.wrapping_sub(bend.wrapping_add(bend)),
+                    dx_down: dxy,
+                    dxx,
+                }
             }
 
+            /// Moves down `rows` rows, of which there are `pairs` pairs: rows (rows - 1) / 2.
             #[inline(always)]
-            fn minus(self, other: Self) -> Self {
-                self.wrapping_sub(other)
+            pub(super) fn jump(&mut self, rows: $number, pairs: $number) {
+                self.c = self.c.wrapping_add(self.c_down.wrapping_mul(rows)).wrapping_add(self.c_down2.wrapping_mul(pairs));
+                self.c_down = self.c_down.wrapping_add(self.c_down2.wrapping_mul(rows));
+                self.dx = self.dx.wrapping_add(self.dx_down.wrapping_mul(rows));
             }
 
+            /// Moves down one row.
             #[inline(always)]
-            fn times(self, other: Self) -> Self {
-                self.wrapping_mul(other)
+            pub(super) fn step_row(&mut self) {
+                self.c = self.c.wrapping_add(self.c_down);
+                self.c_down = self.c_down.wrapping_add(self.c_down2);
+                self.dx = self.dx.wrapping_add(self.dx_down);
+            }
+
+            /// The value on column `x`, its difference to the next column on the left, and the difference of differences.
+            #[inline(always)]
+            pub(super) fn at(&self, x: $number) -> [$number; 3] {
+                let bend = self.dxx.wrapping_mul(x);
+                // V(x - 1) - V(x) = dxx - dx - 2 dxx x.
+                [
+                    self.c.wrapping_add(self.dx.wrapping_add(bend).wrapping_mul(x)),
+                    self.dxx.wrapping_sub(self.dx).wrapping_sub(bend.wrapping_add(bend)),
+                    self.dxx.wrapping_add(self.dxx),
+                ]
             }
         }
-    )*};
+    };
 }
+pub(super) use quadric_row;
 
-modular!(i32 i64);
-
-/// One channel, with x measured from column 0: the polynomial on one row, and how it changes from row to row.
-#[derive(Clone, Copy, Debug)]
-pub(super) struct QuadricRow<N = i32> {
-    /// Value at column 0.
-    c: N,
-    /// First difference of `c` downwards, and its own difference.
-    c_down: N,
-    c_down2: N,
-    /// Coefficient of x, and its difference downwards.
-    dx: N,
-    dx_down: N,
-    /// Coefficient of x².
-    dxx: N,
-}
-
-impl<N: Modular> QuadricRow<N> {
-    /// The polynomial with these coefficients at the column `x`, and `bias` added to its values.
-    #[inline(always)]
-    pub(super) fn new([c, dx, dy, dxx, dxy, dyy]: [N; 6], x: N, bias: N) -> Self {
-        // The move to column 0 is exact.
-        let bend = dxx.times(x);
-        Self {
-            c: c.minus(x.times(dx.minus(bend))).plus(bias),
-            c_down: dy.plus(dyy).minus(dxy.times(x)),
-            c_down2: dyy.plus(dyy),
-            dx: dx.minus(bend.plus(bend)),
-            dx_down: dxy,
-            dxx,
-        }
-    }
-
-    /// Moves down `rows` rows, of which there are `pairs` pairs: rows (rows - 1) / 2.
-    #[inline(always)]
-    pub(super) fn jump(&mut self, rows: N, pairs: N) {
-        self.c = self.c.plus(self.c_down.times(rows)).plus(self.c_down2.times(pairs));
-        self.c_down = self.c_down.plus(self.c_down2.times(rows));
-        self.dx = self.dx.plus(self.dx_down.times(rows));
-    }
-
-    /// Moves down one row.
-    #[inline(always)]
-    pub(super) fn step_row(&mut self) {
-        self.c = self.c.plus(self.c_down);
-        self.c_down = self.c_down.plus(self.c_down2);
-        self.dx = self.dx.plus(self.dx_down);
-    }
-
-    /// The value on column `x`, its difference to the next column on the left, and the difference of differences.
-    #[inline(always)]
-    pub(super) fn at(&self, x: N) -> [N; 3] {
-        let bend = self.dxx.times(x);
-        // V(x - 1) - V(x) = dxx - dx - 2 dxx x.
-        [self.c.plus(self.dx.plus(bend).times(x)), self.dxx.minus(self.dx).minus(bend.plus(bend)), self.dxx.plus(self.dxx)]
-    }
-}
+quadric_row!(
+    /// One channel.
+    #[derive(FromBytes, IntoBytes, Immutable, KnownLayout)]
+    QuadricRow,
+    i32
+);
 
 impl QuadricRow {
     /// See [`Quadric::fit`].
@@ -184,6 +175,13 @@ impl<const CH: usize> Patch for Quadric<CH> {
     }
 
     const WORDS: usize = 6 * CH;
+
+    const FIELDS: Option<[usize; 2]> = Some([0, CH]);
+
+    #[inline(always)]
+    fn lend<'a>(&'a mut self, fields: &mut Fields<'a>, _: usize) {
+        fields.square = self.0.first_mut().map(|row| transmute_mut!(row));
+    }
 
     #[inline(always)]
     fn save(&self, words: &mut [u32]) -> bool {

@@ -10,15 +10,21 @@ use crate::{
     interpolate::{
         Patch, each_channel,
         field::Nodes,
-        quadric::{QuadraticWalker, QuadricRow},
+        quadric::{QuadraticWalker, quadric_row},
     },
     setup::gradients::{GUARD, Gradients},
 };
 
+quadric_row!(
+    /// One channel, in double words.
+    WideRow,
+    i64
+);
+
 /// A quadratic function in each of `CH` channels, standing on one row. Its numbers have 32 fraction bits more than the walked format, and wrap as it
 /// does.
 #[derive(Clone, Copy, Debug)]
-pub(crate) struct WideQuadric<const CH: usize>([QuadricRow<i64>; CH]);
+pub(crate) struct WideQuadric<const CH: usize>([WideRow; CH]);
 
 impl<const CH: usize> WideQuadric<CH> {
     /// The quadratic through six nodes a channel.
@@ -30,7 +36,7 @@ impl<const CH: usize> WideQuadric<CH> {
             } else {
                 gradients.fine_quadratic(BITS, nodes, *extra).map(|c| c << (32 - GUARD))
             };
-            QuadricRow::new(coefficients, gradients.column().into(), 0)
+            WideRow::new(coefficients, gradients.column().into(), 0)
         }))
     }
 }
@@ -44,7 +50,7 @@ impl<const CH: usize> Patch for WideQuadric<CH> {
     }
 
     fn step_row(&mut self) {
-        self.0.iter_mut().for_each(QuadricRow::step_row);
+        self.0.iter_mut().for_each(WideRow::step_row);
     }
 
     fn enter(&self, x: i32) -> QuadraticWalker<CH> {

@@ -14,7 +14,8 @@ use crate::{
     },
     stream::record::Colour,
 };
-use zerocopy::{FromBytes, Immutable, IntoBytes, KnownLayout};
+use microphong_kernels as kernels;
+use zerocopy::{FromBytes, Immutable, IntoBytes, KnownLayout, transmute_ref};
 
 /// A light with a highlight: a walked diffuse level, negative where there is no light, and an entry of the table of highlights.
 #[derive(Clone, Copy, Debug)]
@@ -99,6 +100,35 @@ pub trait LitColours: ByRows {
 pub trait Shades<L>: LitColours {
     /// The colour of light whose diffuse levels have `bits` fraction bits.
     fn colour(&self, bits: u32, light: L) -> Self::Pixel;
+
+    /// The number of numerators of the light that a kernel in assembler divides by a length; 0 if there is no kernel.
+    const NUMERATORS: usize = 0;
+
+    /// Fills rows by the kernel, see [`kernels::lit`].
+    #[inline(always)]
+    fn fill(&self, _: kernels::Rows<'_>, _: (&mut kernels::Plane, kernels::Fields<'_>), _: kernels::Lookup<'_>) -> Option<u32> {
+        None
+    }
+}
+
+/// Fraction bits of the diffuse levels of kernels.
+pub(crate) const KERNEL_BITS: u32 = 19;
+
+// Kernels contain these numbers as constants.
+const _: () = assert!(KERNEL_BITS + FULL_BITS - FACTOR == 11 && CHANNEL == 22 && LEVEL == 7);
+
+/// A light whose type tells whether it has a highlight.
+pub trait MayHaveHighlight: Into<WithHighlight> {
+    /// 1 if it has a highlight.
+    const HIGHLIGHTS: usize;
+}
+
+impl MayHaveHighlight for WithHighlight {
+    const HIGHLIGHTS: usize = 1;
+}
+
+impl MayHaveHighlight for DiffuseOnly {
+    const HIGHLIGHTS: usize = 0;
 }
 
 /// The diffuse level of a node of this cosine (Q2.30), of a material with the level `full` (Q9.7) at cosine 1, in Q10 with `bits` fraction
@@ -138,11 +168,38 @@ impl<C: Pixel> Shades<WithHighlight> for OneLightRamp<'_, C> {
     fn colour(&self, bits: u32, WithHighlight(diffuse, highlight): WithHighlight) -> C {
         C::ramped(self.ramps.now(), (diffuse.max(0) as u32).wrapping_add(highlight << (bits - LEVEL)), bits)
     }
+
+    const NUMERATORS: usize = 2;
+
+    #[inline(always)]
+    fn fill(
+        &self,
+        rows: kernels::Rows<'_>,
+        (depth, fields): (&mut kernels::Plane, kernels::Fields<'_>),
+        lookup: kernels::Lookup<'_>,
+    ) -> Option<u32> {
+        let [even, odd] = self.ramps.both();
+        kernels::lit_ramp::<1>(rows, depth, fields, lookup, [C::ramp(even)?, C::ramp(odd)?])
+    }
 }
 
 impl<C: Pixel> Shades<DiffuseOnly> for OneLightRamp<'_, C> {
     fn colour(&self, bits: u32, DiffuseOnly(diffuse): DiffuseOnly) -> C {
         self.colour(bits, WithHighlight(diffuse, self.floor))
+    }
+
+    const NUMERATORS: usize = 1;
+
+    #[inline(always)]
+    fn fill(
+        &self,
+        rows: kernels::Rows<'_>,
+        (depth, fields): (&mut kernels::Plane, kernels::Fields<'_>),
+        lookup: kernels::Lookup<'_>,
+    ) -> Option<u32> {
+        let [even, odd] = self.ramps.both();
+        let lookup = kernels::Lookup { top: (self.floor << (KERNEL_BITS - LEVEL)) as i32, ..lookup };
+        kernels::lit_ramp::<0>(rows, depth, fields, lookup, [C::ramp(even)?, C::ramp(odd)?])
     }
 }
 
@@ -248,9 +305,15 @@ impl<'a, C: Pixel> OneLightRgb<'a, C> {
     }
 }
 
-impl<C> OneLightRgb<'_, C> {
+impl<'a, C> OneLightRgb<'a, C> {
     /// See [`LitColours::diffuse`].
     const DIFFUSE: u16 = 1 << (FULL_BITS + LEVEL);
+
+    /// The sums as kernels read them.
+    #[inline(always)]
+    fn in_kernels(&self) -> [&'a [kernels::Sums; 1]; 2] {
+        self.0.both().map(|sums| transmute_ref!(sums))
+    }
 }
 
 impl<C: Pixel> OneLightRgb<'_, C> {
@@ -289,6 +352,18 @@ impl<C: Pixel> Shades<WithHighlight> for OneLightRgb<'_, C> {
         let ([r, g, b], cosine, highlight) = (self.0.now(), cosine(bits, diffuse), highlight as i32);
         C::mixed([r.level_from_highlight(cosine, highlight), g.level(cosine, highlight), b.level(cosine, highlight)])
     }
+
+    const NUMERATORS: usize = 2;
+
+    #[inline(always)]
+    fn fill(
+        &self,
+        rows: kernels::Rows<'_>,
+        fields: (&mut kernels::Plane, kernels::Fields<'_>),
+        lookup: kernels::Lookup<'_>,
+    ) -> Option<u32> {
+        C::fill_lit::<1, 1>(rows, fields, lookup, self.in_kernels())
+    }
 }
 
 impl<C: Pixel> Shades<DiffuseOnly> for OneLightRgb<'_, C> {
@@ -297,6 +372,18 @@ impl<C: Pixel> Shades<DiffuseOnly> for OneLightRgb<'_, C> {
         let ([r, g, b], cosine) = (self.0.now(), cosine(bits, diffuse));
         let level = |sum: &Sum| sum.ambient.wrapping_add(sum.diffuse.wrapping_mul(cosine));
         C::mixed([level(r), level(g), level(b)])
+    }
+
+    const NUMERATORS: usize = 1;
+
+    #[inline(always)]
+    fn fill(
+        &self,
+        rows: kernels::Rows<'_>,
+        fields: (&mut kernels::Plane, kernels::Fields<'_>),
+        lookup: kernels::Lookup<'_>,
+    ) -> Option<u32> {
+        C::fill_lit::<1, 0>(rows, fields, lookup, self.in_kernels())
     }
 }
 
@@ -559,7 +646,7 @@ impl<C: Pixel> LitColours for TwoLightsRgb<'_, C> {
     }
 }
 
-impl<C: Pixel, A: Into<WithHighlight>, B: Into<WithHighlight>> Shades<(A, B)> for TwoLightsRgb<'_, C> {
+impl<C: Pixel, A: MayHaveHighlight, B: MayHaveHighlight> Shades<(A, B)> for TwoLightsRgb<'_, C> {
     #[inline(always)]
     fn colour(&self, bits: u32, (one, two): (A, B)) -> C {
         let [[r, g, b], [r2, g2, b2]] = self.0.now();
@@ -572,6 +659,24 @@ impl<C: Pixel, A: Into<WithHighlight>, B: Into<WithHighlight>> Shades<(A, B)> fo
             first.level_from_highlight(c, h).wrapping_add(second.specular.wrapping_mul(h2)).wrapping_add(second.diffuse.wrapping_mul(c2))
         };
         C::mixed([level(r, r2), in_turn(g, g2), level(b, b2)])
+    }
+
+    const NUMERATORS: usize = if A::HIGHLIGHTS < B::HIGHLIGHTS { 0 } else { 2 + A::HIGHLIGHTS + B::HIGHLIGHTS };
+
+    #[inline(always)]
+    fn fill(
+        &self,
+        rows: kernels::Rows<'_>,
+        fields: (&mut kernels::Plane, kernels::Fields<'_>),
+        lookup: kernels::Lookup<'_>,
+    ) -> Option<u32> {
+        let sums = self.0.both().map(|sums| transmute_ref!(sums));
+        match (A::HIGHLIGHTS, B::HIGHLIGHTS) {
+            (0, 0) => C::fill_lit::<2, 0>(rows, fields, lookup, sums),
+            (1, 0) => C::fill_lit::<2, 1>(rows, fields, lookup, sums),
+            (1, 1) => C::fill_lit::<2, 2>(rows, fields, lookup, sums),
+            _ => None,
+        }
     }
 }
 

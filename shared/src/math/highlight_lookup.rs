@@ -4,8 +4,12 @@
 
 use crate::{
     arch::product::upper_by_half_word,
-    math::highlight_lut::{HighlightLut, SIZE},
+    math::{
+        highlight_lut::{HighlightLut, SIZE},
+        rsqrt::HalfRsqrt,
+    },
 };
+use microphong_kernels::Lookup;
 
 /// Fraction bits of a node, in steps of the table.
 const NODE: u32 = 6;
@@ -29,6 +33,13 @@ impl<'a> QuotientLookup<'a> {
     #[must_use]
     pub(crate) fn new(lut: &'a HighlightLut) -> Self {
         Self { table: &lut.table, top: ((lut.scale << 7 << STEP) + (1 << (STEP - 1))) as i32, factor: (lut.scale << 16) as i32 }
+    }
+
+    /// What a kernel needs for this lookup. It reads reciprocal lengths from `roots`.
+    #[inline(always)]
+    pub(crate) fn in_kernels(&self, roots: &'a HalfRsqrt) -> Lookup<'a> {
+        const { assert!(STEP == 8) };
+        Lookup { roots: roots.knots(), highlights: Some(self.table), top: self.top }
     }
 
     /// The node of a numerator, Q2.30: the numerator in steps of the table, Q20.6, rounded down. Domain: within ±2.

@@ -105,6 +105,12 @@ impl HalfRsqrt {
         &TABLE
     }
 
+    /// All knots, for kernels in assembler.
+    #[must_use]
+    pub fn knots(&self) -> &[u32; 2048] {
+        &self.0
+    }
+
     /// Half the reciprocal root, 1/(2 sqrt(x)), Q2.30; `above` is x - [`LEAST`], unsigned Q0.32.
     ///
     /// Domain: x in [1/4, 1]. Error: at most [`HALF_ERROR`] relative; from [`LEAST`] to 1/4, and above 1, at most [`OUTSIDE_ERROR`]

@@ -221,6 +221,25 @@ pub trait Pixel: PixelFormat {
         None
     }
 
+    /// A table of colours as a kernel reads it.
+    #[doc(hidden)]
+    #[inline(always)]
+    fn ramp(_: &[Self::Stored; RAMP]) -> Option<&[u16; RAMP]> {
+        None
+    }
+
+    /// Fills rows by light that is computed at each pixel, see [`kernels::lit`].
+    #[doc(hidden)]
+    #[inline(always)]
+    fn fill_lit<const LIGHTS: usize, const HIGHLIGHTS: usize>(
+        _: kernels::Rows<'_>,
+        _: (&mut kernels::Plane, kernels::Fields<'_>),
+        _: kernels::Lookup<'_>,
+        _: [&[kernels::Sums; LIGHTS]; 2],
+    ) -> Option<u32> {
+        None
+    }
+
     /// Fills rows by three levels with [`CHANNEL`] fraction bits, see [`kernels::channels`].
     #[doc(hidden)]
     #[inline(always)]
@@ -365,6 +384,21 @@ macro_rules! rgb565 {
             #[inline(always)]
             fn table(ramps: &InTurn<u16>) -> Option<&kernels::Table> {
                 Some(transmute_ref!(ramps))
+            }
+
+            #[inline(always)]
+            fn ramp(ramp: &[u16; RAMP]) -> Option<&[u16; RAMP]> {
+                Some(ramp)
+            }
+
+            #[inline(always)]
+            fn fill_lit<const LIGHTS: usize, const HIGHLIGHTS: usize>(
+                rows: kernels::Rows<'_>,
+                (depth, fields): (&mut kernels::Plane, kernels::Fields<'_>),
+                lookup: kernels::Lookup<'_>,
+                sums: [&[kernels::Sums; LIGHTS]; 2],
+            ) -> Option<u32> {
+                kernels::lit::<{ $order as u8 }, LIGHTS, HIGHLIGHTS>(rows, depth, fields, lookup, sums)
             }
 
             #[inline(always)]
@@ -568,6 +602,21 @@ impl Pixel for Rgb565Be {
     #[inline(always)]
     fn table(ramps: &InTurn<Self>) -> Option<&kernels::Table> {
         Some(transmute_ref!(ramps))
+    }
+
+    #[inline(always)]
+    fn ramp(ramp: &[Self; RAMP]) -> Option<&[u16; RAMP]> {
+        Some(transmute_ref!(ramp))
+    }
+
+    #[inline(always)]
+    fn fill_lit<const LIGHTS: usize, const HIGHLIGHTS: usize>(
+        rows: kernels::Rows<'_>,
+        (depth, fields): (&mut kernels::Plane, kernels::Fields<'_>),
+        lookup: kernels::Lookup<'_>,
+        sums: [&[kernels::Sums; LIGHTS]; 2],
+    ) -> Option<u32> {
+        kernels::lit::<{ kernels::Format::Swapped as u8 }, LIGHTS, HIGHLIGHTS>(rows, depth, fields, lookup, sums)
     }
 
     #[inline(always)]

@@ -1,10 +1,13 @@
 //! Pixel shaders, which convert walked values to pixels in loops that are compiled for one method and one pixel format.
 
-use crate::pixel::{
-    Pixel,
-    by_rows::{ByRows, ByTurns},
-    ramps::Ramps,
-    steps,
+use crate::{
+    interpolate::Patch,
+    pixel::{
+        Pixel,
+        by_rows::{ByRows, ByTurns},
+        ramps::Ramps,
+        steps,
+    },
 };
 use microphong_kernels::{self as kernels, Plane};
 
@@ -28,15 +31,23 @@ pub trait PixelShader<V>: ByRows {
     /// The colour of a value.
     fn shade(&self, value: V) -> Self::Pixel;
 
-    /// Whether kernels in assembler know the shader and the pixel format.
-    const HAS_KERNEL: bool = false;
+    /// The [`Patch::FIELDS`] that a kernel in assembler walks for the shader; `None` if there is no kernel for it, for the pixel format or for the
+    /// processor.
+    const KERNEL: Option<[usize; 2]> = None;
 
-    /// Fills rows by a kernel, if the processor has them. There is no plane of `depth` without a depth test. Returns the number of pixels between the
-    /// sides.
+    /// Whether the kernel also fills rows without a depth test.
+    const ALONE: bool = false;
+
+    /// Fills rows by the kernel. There is no plane of `depth` without a depth test. Returns the number of pixels between the sides.
     #[inline(always)]
-    fn fill(&self, _rows: kernels::Rows<'_>, _depth: &mut [Plane], _values: &mut [Plane]) -> Option<u32> {
+    fn fill<P: Patch>(&self, _rows: kernels::Rows<'_>, _depth: &mut [Plane], _patch: &mut P) -> Option<u32> {
         None
     }
+}
+
+/// So many planes, if there are kernels for the pixel format and the processor.
+const fn linear<C: Pixel>(planes: usize) -> Option<[usize; 2]> {
+    if C::HAS_KERNELS && kernels::AVAILABLE { Some([planes, 0]) } else { None }
 }
 
 /// One colour for all pixels, as tables of colours hold it for even rows and for odd ones.
@@ -75,10 +86,12 @@ impl<C: Pixel> PixelShader<()> for Solid<C> {
         C::from_stored(self.0.now())
     }
 
-    const HAS_KERNEL: bool = C::HAS_KERNELS;
+    const KERNEL: Option<[usize; 2]> = linear::<C>(0);
+
+    const ALONE: bool = true;
 
     #[inline(always)]
-    fn fill(&self, rows: kernels::Rows<'_>, depth: &mut [Plane], _: &mut [Plane]) -> Option<u32> {
+    fn fill<P: Patch>(&self, rows: kernels::Rows<'_>, depth: &mut [Plane], _: &mut P) -> Option<u32> {
         kernels::solid(rows, depth.first_mut(), C::halves(self.0.both())?)
     }
 }
@@ -98,11 +111,13 @@ impl<C: Pixel> PixelShader<[u32; 1]> for Ramp<'_, C> {
         C::from_stored(C::walked(self.0, level))
     }
 
-    const HAS_KERNEL: bool = C::HAS_KERNELS;
+    const KERNEL: Option<[usize; 2]> = linear::<C>(1);
+
+    const ALONE: bool = true;
 
     #[inline(always)]
-    fn fill(&self, rows: kernels::Rows<'_>, depth: &mut [Plane], values: &mut [Plane]) -> Option<u32> {
-        kernels::ramp(rows, depth.first_mut(), values.first_mut()?, C::table(self.0)?)
+    fn fill<P: Patch>(&self, rows: kernels::Rows<'_>, depth: &mut [Plane], patch: &mut P) -> Option<u32> {
+        kernels::ramp(rows, depth.first_mut(), patch.planes().first_mut()?, C::table(self.0)?)
     }
 }
 
@@ -145,11 +160,11 @@ impl<C: Pixel> PixelShader<[u32; 3]> for Rgb<C> {
         C::mixed([r as i32, g as i32, b as i32])
     }
 
-    const HAS_KERNEL: bool = C::HAS_KERNELS;
+    const KERNEL: Option<[usize; 2]> = linear::<C>(3);
 
     #[inline(always)]
-    fn fill(&self, rows: kernels::Rows<'_>, depth: &mut [Plane], values: &mut [Plane]) -> Option<u32> {
-        C::fill_channels(rows, depth.first_mut()?, values.first_chunk_mut()?, self.0.now())
+    fn fill<P: Patch>(&self, rows: kernels::Rows<'_>, depth: &mut [Plane], patch: &mut P) -> Option<u32> {
+        C::fill_channels(rows, depth.first_mut()?, patch.planes().first_chunk_mut()?, self.0.now())
     }
 }
 

@@ -80,6 +80,14 @@ const _: () = {
     assert!(MAX_STEPPED_HEIGHT >> SUBPIXEL < kernels::MAX_HEIGHT as i32);
 };
 
+/// Fills a part of the rows of a triangle, see [`ScreenTriangle::fill_parts`].
+type FillPart<'f, C> = dyn FnMut([i32; 2], &mut LeftRight, &mut Band<'_, C>, bool) -> u32 + 'f;
+
+/// Whether a kernel walks the fields that a patch has.
+const fn is_same(kernel: Option<[usize; 2]>, patch: Option<[usize; 2]>) -> bool {
+    matches!((kernel, patch), (Some([planes, quadratics]), Some([p, q])) if planes == p && quadratics == q)
+}
+
 /// All bits of the number of pixels in a row.
 const ROW: u32 = 2 * COLUMNS - 1;
 
@@ -235,7 +243,7 @@ impl<'f> ScreenTriangle<'f> {
         if TRANSPARENCY && band.sheet.iter().any(|sheet| sheet.glass.is_some()) {
             return self.walk_glass(gradients, depth, patch, shader, band);
         }
-        if const { kernels::AVAILABLE && T::HAS_KERNEL && P::IS_LINEAR && D::IS_LINEAR && (T::CHEAP || D::WORDS > 0) } {
+        if const { is_same(T::KERNEL, P::FIELDS) && (T::ALONE || D::WORDS > 0) } {
             return self.walk_by_kernel(gradients, depth, patch, shader, band);
         }
         let sides = &self.rows.sides;
@@ -358,30 +366,27 @@ impl<'f> ScreenTriangle<'f> {
         let sides = &self.rows.sides;
         match sides.below() {
             Some(turn) => fill_part([sides.row, sides.stop], pair, turn, (depth, patch), &shader, band),
-            None => self.fill_parts(pair, depth, patch, shader, band),
+            None => self.fill_parts(pair, band, &mut |rows, pair, band, is_odd| {
+                let mut shader = shader;
+                if is_odd {
+                    shader.step_row();
+                }
+                fill_part(rows, pair, kernels::Turn::default(), (depth, patch), &shader, band)
+            }),
         }
     }
 
-    /// [`Self::fill_by_kernel`] if sides are computed again for some rows.
+    /// [`Self::fill_by_kernel`] if sides are computed again for some rows. `fill` gets a part of the rows. Its last argument is true if an odd number of rows
+    /// lies above this part.
     #[cold]
     #[inline(never)]
-    fn fill_parts<D: Patch, P: Patch, T: PixelShader<<P::Walker as Walker>::Value>>(
-        &self,
-        pair: &mut LeftRight,
-        depth: &mut D,
-        patch: &mut P,
-        mut shader: T,
-        band: &mut Band<'_, T::Pixel>,
-    ) -> u32 {
+    fn fill_parts<C: Pixel>(&self, pair: &mut LeftRight, band: &mut Band<'_, C>, fill: &mut FillPart<'_, C>) -> u32 {
         let sides = &self.rows.sides;
         let (mut row, mut stop, mut filled) = (sides.row, sides.stop, 0u32);
         loop {
-            filled = filled.wrapping_add(fill_part([row, stop], pair, kernels::Turn::default(), (depth, patch), &shader, band));
+            filled = filled.wrapping_add(fill([row, stop], pair, band, row.wrapping_sub(sides.row) & 1 != 0));
             if stop >= sides.end {
                 return filled;
-            }
-            if stop.wrapping_sub(row) & 1 != 0 {
-                shader.step_row();
             }
             row = stop;
             stop = self.next(row, pair);
@@ -451,7 +456,7 @@ fn fill_part<D: Patch, P: Patch, T: PixelShader<<P::Walker as Walker>::Value>>(
     let Some(pixels) = T::Pixel::halfwords(band.pixels) else { return 0 };
     let (first, height) = (row.wrapping_sub(band.top) as u32, stop.wrapping_sub(row) as u32);
     let rows = kernels::Rows { pixels, depth: band.depth, width: band.width, first, sides: transmute_mut!(pair), height, turn };
-    shader.fill(rows, depth.planes(), patch.planes()).unwrap_or(0)
+    shader.fill(rows, depth.planes(), patch).unwrap_or(0)
 }
 
 /// Saves a triangle for the next band, stepped to its first row there.

@@ -6,6 +6,8 @@
 #![no_std]
 #![no_main]
 
+mod lit;
+
 use core::fmt::{self, Arguments, Write};
 use cortex_m_semihosting::{debug, hio};
 use microphong_kernels::{Format, MAX_FIRST, MAX_HEIGHT, MAX_WIDTH, Plane, Rows, Sides, Table, Turn, channels, ramp, solid};
@@ -250,6 +252,10 @@ fn main() -> ! {
                 debug::exit(debug::EXIT_FAILURE);
             }
         }
+    }
+    if microphong_kernels::LIT_AVAILABLE {
+        let (lit, lit_pixels) = lit::compare(&mut random);
+        (cases, pixels) = (cases + lit, pixels + lit_pixels);
     }
     say(format_args!("{cases} cases of {pixels} pixels are equal"));
     debug::exit(debug::EXIT_SUCCESS);

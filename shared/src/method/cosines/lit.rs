@@ -4,11 +4,13 @@
 //! here: one light or two, and colours from a table or from sums.
 
 use crate::{
-    lighting::constant_lights::{Coloured, Shades, SurfaceColour},
-    pixel::by_rows::ByRows,
+    interpolate::Patch,
+    lighting::constant_lights::{Coloured, KERNEL_BITS, Shades, SurfaceColour},
+    pixel::{Pixel, by_rows::ByRows},
     raster::pixel_shader::PixelShader,
 };
 use core::marker::PhantomData;
+use microphong_kernels as kernels;
 
 /// What a method computes at a pixel for all lights together, such as a reciprocal length.
 pub(super) trait AtPixel<V>: Copy {
@@ -22,6 +24,16 @@ pub(super) trait AtPixel<V>: Copy {
 
     /// Divides walked values into what all lights have in common and the values of the lights.
     fn at(&self, value: V) -> (Self::Common, Self::Values);
+
+    /// Whether the values are planes that are divided by the root of a quadratic: that of each light, and that of its highlight if it has one. Kernels in assembler
+    /// compute this.
+    const IS_QUOTIENT: bool = false;
+
+    /// Where kernels look up light.
+    #[inline(always)]
+    fn lookup(&self) -> Option<kernels::Lookup<'_>> {
+        None
+    }
 }
 
 /// A light that a method makes of its values `V` at a pixel, and of `M`, which all lights have in common there.
@@ -89,5 +101,19 @@ impl<V, T: Shades<L>, K: AtPixel<V>, L: FromValues<K::Common, K::Values>> PixelS
     fn shade(&self, value: V) -> T::Pixel {
         let (common, values) = self.at.at(value);
         self.colours.colour(K::BITS, L::from_values(&common, self.colours.diffuse(), values))
+    }
+
+    const KERNEL: Option<[usize; 2]> =
+        if kernels::LIT_AVAILABLE && T::Pixel::HAS_KERNELS && K::IS_QUOTIENT && K::BITS == KERNEL_BITS && T::NUMERATORS > 0 {
+            Some([T::NUMERATORS, 1])
+        } else {
+            None
+        };
+
+    #[inline(always)]
+    fn fill<P: Patch>(&self, rows: kernels::Rows<'_>, depth: &mut [kernels::Plane], patch: &mut P) -> Option<u32> {
+        let mut fields = kernels::Fields::default();
+        patch.lend(&mut fields, 0);
+        self.colours.fill(rows, (depth.first_mut()?, fields), self.at.lookup()?)
     }
 }

@@ -15,7 +15,8 @@ use crate::{
     lighting::{
         albedo::{Albedo, SHARE},
         constant_lights::{
-            COLOUR, Coloured, DiffuseOnly, LitColours, OneLightRamp, OneLightRgb, Shades, SurfaceColour, WithHighlight, node,
+            COLOUR, Coloured, DiffuseOnly, KERNEL_BITS, LitColours, MayHaveHighlight, OneLightRamp, OneLightRgb, Shades, SurfaceColour,
+            WithHighlight, node,
         },
         material_tables::MaterialTables,
     },
@@ -32,6 +33,7 @@ use crate::{
     pixel::Pixel,
     raster::{band::Band, pixel_shader::Solid},
 };
+use microphong_kernels as kernels;
 
 /// Fraction bits of a diffuse level at a node. With a sign, levels then have [`RANGE`] bits.
 pub(super) const NODE: u32 = 10;
@@ -47,6 +49,8 @@ const SHARES: u32 = SHARE_NODE + 1;
 const SHARE_NODE: u32 = SHARE - 1;
 /// Bits of the range of numerators at nodes, in steps of the table.
 const STEPS: u32 = 26;
+
+const _: () = assert!(PIXEL == KERNEL_BITS);
 
 /// Half a reciprocal length, Q2.30.
 pub(super) struct HalfReciprocal(pub(super) i32);
@@ -69,6 +73,13 @@ impl<V> AtPixel<(V, [u32; 1])> for Quotient<'_> {
     fn at(&self, (values, [square]): (V, [u32; 1])) -> (HalfReciprocal, V) {
         (HalfReciprocal(self.0.rsqrt(square) as i32), values)
     }
+
+    const IS_QUOTIENT: bool = true;
+
+    #[inline(always)]
+    fn lookup(&self) -> Option<kernels::Lookup<'_>> {
+        Some(kernels::Lookup { roots: self.0.knots(), highlights: None, top: 0 })
+    }
 }
 
 impl<'a, V> AtPixel<(V, [u32; 1])> for QuotientWithHighlight<'a> {
@@ -80,6 +91,13 @@ impl<'a, V> AtPixel<(V, [u32; 1])> for QuotientWithHighlight<'a> {
     #[inline(always)]
     fn at(&self, (values, [square]): (V, [u32; 1])) -> (Self::Common, V) {
         ((self.0, HalfReciprocal(self.1.rsqrt(square) as i32)), values)
+    }
+
+    const IS_QUOTIENT: bool = true;
+
+    #[inline(always)]
+    fn lookup(&self) -> Option<kernels::Lookup<'_>> {
+        Some(self.0.in_kernels(self.1))
     }
 }
 
@@ -129,6 +147,10 @@ impl FromValues<(QuotientLookup<'_>, HalfReciprocal), ([u32; 1], [u32; 1])> for 
         let highlight = lookup.at(upper(half as i32, *half_reciprocal));
         Self(WithHighlight(upper(light as i32, *half_reciprocal), highlight))
     }
+}
+
+impl MayHaveHighlight for HighlightFirst {
+    const HIGHLIGHTS: usize = 1;
 }
 
 /// Draws `setup` under one light with these `cosines` and `lengths` of normals; `None` if its levels do not fit their formats.

@@ -1,0 +1,238 @@
+//! Kernels that compute light at each pixel, and the loop that they replace.
+
+use crate::{GUARD, PIXELS, Random, line, plane, say};
+use cortex_m_semihosting::debug;
+use microphong_kernels::{Fields, Format, Highlights, Lookup, MAX_HEIGHT, Plane, Quadric, Roots, Rows, Sides, Sums, Turn, lit, lit_ramp};
+
+/// Cases for each kernel.
+const CASES: u32 = 10_000;
+
+/// Any numbers, as a table.
+const fn scattered(i: usize) -> u32 {
+    (i as u32).wrapping_mul(2_654_435_761) ^ (i as u32) << 7
+}
+
+static ROOTS: Roots = {
+    let mut table = [0; 2048];
+    let mut i = 0;
+    while i < table.len() {
+        table[i] = scattered(i);
+        i += 1;
+    }
+    table
+};
+
+static HIGHLIGHTS: Highlights = {
+    let mut table = [0; 4097];
+    let mut i = 0;
+    while i < table.len() {
+        table[i] = (scattered(i) >> 9) as u16;
+        i += 1;
+    }
+    table
+};
+
+static RAMPS: [[u16; 512]; 2] = {
+    let mut tables = [[0; 512]; 2];
+    let mut i = 0;
+    while i < 1024 {
+        tables[i % 2][i / 2] = (scattered(i) >> 11) as u16;
+        i += 1;
+    }
+    tables
+};
+
+/// A kernel: the format of channels or none for a table of colours, the lights, and highlights.
+type Kernel = (Option<Format>, usize, usize);
+
+const KERNELS: [Kernel; 9] = [
+    (Some(Format::Rgb), 1, 0),
+    (Some(Format::Rgb), 1, 1),
+    (Some(Format::Rgb), 2, 0),
+    (Some(Format::Rgb), 2, 1),
+    (Some(Format::Rgb), 2, 2),
+    (Some(Format::Bgr), 2, 2),
+    (Some(Format::Swapped), 1, 1),
+    (None, 1, 0),
+    (None, 1, 1),
+];
+
+/// What a kernel changes.
+#[derive(Clone, PartialEq)]
+struct State {
+    pixels: [u16; PIXELS + 2 * GUARD],
+    depth: [u16; PIXELS + 2 * GUARD],
+    sides: Sides,
+    plane: Plane,
+    planes: [Plane; 4],
+    square: Quadric,
+}
+
+/// What it does not.
+#[derive(Clone)]
+struct Case {
+    kernel: Kernel,
+    width: usize,
+    first: u32,
+    height: u32,
+    turn: Turn,
+    top: i32,
+    sums: [[Sums; 2]; 2],
+}
+
+impl Case {
+    fn by_kernel(&self, state: &mut State) -> Option<u32> {
+        let &Self { width, first, height, turn, top, .. } = self;
+        let State { pixels, depth, sides, plane, planes, square } = state;
+        let fields = Fields { planes: planes.each_mut().map(Some), square: Some(square) };
+        let (pixels, depth) = (&mut pixels[GUARD..][..PIXELS], &mut depth[GUARD..][..PIXELS]);
+        let rows = Rows { pixels, depth, width, first, height, sides, turn };
+        let lookup = Lookup { roots: &ROOTS, highlights: Some(&HIGHLIGHTS), top };
+        let [even, odd] = &self.sums;
+        let (one, both) = ([even, odd].map(|sums| sums.first_chunk().unwrap()), [even, odd]);
+        const RGB: u8 = Format::Rgb as u8;
+        match self.kernel {
+            (None, _, 0) => lit_ramp::<0>(rows, plane, fields, lookup, RAMPS.each_ref()),
+            (None, ..) => lit_ramp::<1>(rows, plane, fields, lookup, RAMPS.each_ref()),
+            (Some(Format::Bgr), ..) => lit::<{ Format::Bgr as u8 }, 2, 2>(rows, plane, fields, lookup, both),
+            (Some(Format::Swapped), ..) => lit::<{ Format::Swapped as u8 }, 1, 1>(rows, plane, fields, lookup, one),
+            (_, 1, 0) => lit::<RGB, 1, 0>(rows, plane, fields, lookup, one),
+            (_, 1, _) => lit::<RGB, 1, 1>(rows, plane, fields, lookup, one),
+            (_, _, 0) => lit::<RGB, 2, 0>(rows, plane, fields, lookup, both),
+            (_, _, 1) => lit::<RGB, 2, 1>(rows, plane, fields, lookup, both),
+            _ => lit::<RGB, 2, 2>(rows, plane, fields, lookup, both),
+        }
+    }
+
+    /// The pixel of these fields, on an even row of the kernel or on an odd one.
+    fn pixel(&self, planes: &[Plane; 4], square: &Quadric, column: i32, parity: usize) -> u16 {
+        let (format, lights, highlights) = self.kernel;
+        let square = square[3].wrapping_add(square[5].wrapping_mul(column)).wrapping_mul(column).wrapping_add(square[0]) as u32;
+        let knot = ROOTS[(square >> 21) as usize];
+        let half_reciprocal = knot.wrapping_sub((knot & 0x3FF).wrapping_mul(square >> 11 & 0x3FF)) as i32;
+        let mut planes = planes.iter();
+        let mut quotient = || {
+            let plane = planes.next().unwrap();
+            let value = plane[0].wrapping_add(plane[1].wrapping_mul(column));
+            ((i64::from(value) * i64::from(half_reciprocal)) >> 32) as i32
+        };
+        let mut light = |has_highlight: bool| {
+            let level = quotient();
+            let place = if has_highlight { self.top.wrapping_sub(quotient()) >> 8 } else { 4096 };
+            (level, if has_highlight { i32::from(HIGHLIGHTS[place.clamp(0, 4095) as usize]) } else { 0 })
+        };
+        let (level, highlight) = light(highlights > 0);
+        let Some(format) = format else {
+            let more = if highlights > 0 { (highlight as u32) << 12 } else { self.top as u32 };
+            return RAMPS[parity][((level.max(0) as u32).wrapping_add(more) >> 19 & 511) as usize];
+        };
+        let (second, second_highlight) = if lights > 1 { light(highlights > 1) } else { (0, 0) };
+        let cosine = |level: i32| (level >> 11).clamp(0, 0x7FFF);
+        let channel = |k: usize, bits: u32| {
+            let [[ambient, diffuse, specular], [_, diffuse2, specular2]] = self.sums[parity].map(|light| light[k]);
+            let level = ambient.wrapping_add(diffuse.wrapping_mul(cosine(level))).wrapping_add(specular.wrapping_mul(highlight));
+            let level = level.wrapping_add(diffuse2.wrapping_mul(cosine(second))).wrapping_add(specular2.wrapping_mul(second_highlight));
+            (level >> (30 - bits)).clamp(0, (1 << bits) - 1) as u16
+        };
+        let [red, green, blue] = [channel(0, 5), channel(1, 6), channel(2, 5)];
+        match format {
+            Format::Rgb => red << 11 | green << 5 | blue,
+            Format::Bgr => blue << 11 | green << 5 | red,
+            Format::Swapped => (red << 11 | green << 5 | blue).swap_bytes(),
+        }
+    }
+
+    fn by_loop(&self, state: &mut State) -> u32 {
+        let State { pixels, depth, sides, plane, planes, square } = state;
+        let (_, lights, highlights) = self.kernel;
+        let mut count = 0;
+        for row in 0..self.height + self.turn.height {
+            if row == self.height {
+                let side = 2 * usize::from(self.turn.is_right);
+                sides[side..side + 2].copy_from_slice(&self.turn.line);
+            }
+            let (left, right) = ((sides[0] >> 21) as usize, (sides[2] >> 21) as usize);
+            let start = GUARD + (self.first + row) as usize * self.width;
+            if left < right && right <= self.width {
+                count += (right - left) as u32;
+                for column in (left..right).rev() {
+                    let inv_depth = (plane[0].wrapping_add(plane[1].wrapping_mul(column as i32)) as u32 >> 16) as u16;
+                    if inv_depth > depth[start + column] {
+                        depth[start + column] = inv_depth;
+                        pixels[start + column] = self.pixel(planes, square, column as i32, row as usize % 2);
+                    }
+                }
+            }
+            sides[0] = sides[0].wrapping_add(sides[1]);
+            sides[2] = sides[2].wrapping_add(sides[3]);
+            plane[0] = plane[0].wrapping_add(plane[2]);
+            planes.iter_mut().take(lights + highlights).for_each(|[value, _, down]| *value = value.wrapping_add(*down));
+            for (to, from) in [(0, 1), (1, 2), (3, 4)] {
+                square[to] = square[to].wrapping_add(square[from]);
+            }
+        }
+        count
+    }
+}
+
+/// Compares all kernels with the loop, in random cases and where rows do not fit. Returns how many cases there were, and pixels.
+pub(crate) fn compare(random: &mut Random) -> (u32, u32) {
+    let (mut cases, mut pixels) = (0, 0);
+    for kernel in KERNELS {
+        for number in 0..CASES {
+            let width = random.below(40) as usize + 1;
+            let rows = (PIXELS / width) as u32;
+            let first = random.below(rows.min(8) + 1);
+            let height = random.below((rows - first).min(9) + 1);
+            let below = random.below((rows - first - height).min(9) + 1);
+            let turn = Turn { height: below, is_right: random.below(2) == 1, line: line(random, width) };
+            let mut sum = || [(random.next() >> 3) as i32, random.next() as i32 >> 17, random.next() as i32 >> 17];
+            let mut sums = || [sum(), sum(), sum()];
+            let sums = [[sums(), sums()], [sums(), sums()]];
+            let case = Case { kernel, width, first, height, turn, top: random.next() as i32 >> 10, sums };
+            let [l, r] = [line(random, width), line(random, width)];
+            // Quotients of small numerators often lie between the ends of tables.
+            let shift = 5 * random.below(3);
+            let planes = core::array::from_fn(|_| [0; 3].map(|_: i32| random.next() as i32 >> shift));
+            let square = [0; 6].map(|_: i32| random.next() as i32);
+            let mut state = State {
+                pixels: [0x5555; PIXELS + 2 * GUARD],
+                depth: [0; PIXELS + 2 * GUARD],
+                sides: [l[0], l[1], r[0], r[1]],
+                plane: plane(random, crate::Kernel::Ramp),
+                planes,
+                square,
+            };
+            let far = random.next() as u16;
+            state.depth.iter_mut().step_by(3).for_each(|depth| *depth = far);
+            let mut by_loop = state.clone();
+            let (count, expected) = (case.by_kernel(&mut state), case.by_loop(&mut by_loop));
+            if count != Some(expected) || state != by_loop {
+                let same = [state.pixels == by_loop.pixels, state.depth == by_loop.depth, state.sides == by_loop.sides];
+                say(format_args!("light by {kernel:?} differs in case {number}: count {count:?} {expected}, same {same:?}"));
+                say(format_args!("{:x?} {:x?}", state.square, by_loop.square));
+                debug::exit(debug::EXIT_FAILURE);
+            }
+            (cases, pixels) = (cases + 1, pixels + expected);
+        }
+        // Rows that do not fit change nothing.
+        let fits = Case { kernel, width: 20, first: 10, height: 10, turn: Turn::default(), top: 0, sums: [[[[1; 3]; 3]; 2]; 2] };
+        for case in [Case { first: 21, ..fits.clone() }, Case { height: MAX_HEIGHT + 1, width: 0, ..fits.clone() }] {
+            let before = State {
+                pixels: [0x5555; PIXELS + 2 * GUARD],
+                depth: [0; PIXELS + 2 * GUARD],
+                sides: [1 << 21, 1 << 20, 12 << 21, 1 << 20],
+                plane: [1 << 30, 0, 1],
+                planes: [[1 << 29; 3]; 4],
+                square: [1 << 29; 6],
+            };
+            let mut state = before.clone();
+            let count = case.by_kernel(&mut state);
+            if count != Some(0) || state != before {
+                say(format_args!("light by {kernel:?} draws rows that do not fit: count {count:?}"));
+                debug::exit(debug::EXIT_FAILURE);
+            }
+        }
+    }
+    (cases, pixels)
+}
