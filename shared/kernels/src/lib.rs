@@ -20,12 +20,13 @@ mod processor;
 #[path = "lit_armv7m.rs"]
 mod lit;
 
+use core::mem::MaybeUninit;
 use embedded_graphics_core::pixelcolor::{Bgr565, Rgb565};
 
 /// Whether there are kernels for the processor that is compiled for.
 pub const AVAILABLE: bool = cfg!(kernels);
 
-/// Whether [`lit`] and [`lit_ramp`] are among them.
+/// Whether kernels of [`Lit`] are among them.
 pub const LIT_AVAILABLE: bool = cfg!(kernels = "armv7m");
 
 /// The left side of a triangle and then the right one: each the column of the coming row, unsigned Q11.21, and what is added to it for the next row.
@@ -164,7 +165,7 @@ struct Job<T> {
     lines: Lines,
 }
 
-/// What [`lit`] and [`lit_ramp`] read besides sides, depth and fields.
+/// What a kernel of [`Lit`] reads besides sides, depth and fields.
 #[cfg(kernels = "armv7m")]
 #[repr(C)]
 struct LitJob {
@@ -172,7 +173,7 @@ struct LitJob {
     colours: [*const (); 2],
     roots: *const u32,
     highlights: *const u16,
-    /// The place of a whole highlight in their table; for a table of colours without highlights, the level of ambient light.
+    /// See [`Lookup::top`].
     top: i32,
     width: usize,
     /// Rows above the turn, from bit [`COUNTED`] on.
@@ -279,6 +280,10 @@ pub type Highlights = [u16; 4097];
 /// Levels of one light in red, green and blue: ambient light with 22 fraction bits, and the factors of a cosine, Q1.15, and of a highlight.
 pub type Sums = [[i32; 3]; 3];
 
+/// Four numbers for each of red, green and blue. The first is for rounding and dither, and the second is ambient light, both with 22 fraction bits.
+/// On a surface of one colour the first is not used, and the second includes it. Factors follow, see [`Colours`].
+pub type Shares = [[i32; 4]; 3];
+
 /// Where light at a pixel is looked up.
 #[derive(Clone, Copy, Debug)]
 pub struct Lookup<'a> {
@@ -286,122 +291,171 @@ pub struct Lookup<'a> {
     pub roots: &'a Roots,
     /// Highlights, if the material has any.
     pub highlights: Option<&'a Highlights>,
-    /// The place where a highlight is whole, with 8 fraction bits, from which a quotient is subtracted.
+    /// The place where a highlight is whole, with 8 fraction bits, from which a quotient is subtracted. For a table of colours without highlights it is the
+    /// level of ambient light.
     pub top: i32,
+}
+
+/// The colours of light, for the first row and for the second, in turn.
+///
+/// A kernel divides numerators by the root of a square. Their order is that of this text. The quotient of a light or of a sum is a level with 19 fraction
+/// bits. For a light a cosine of 1 is the level 2^7, and it is clamped to 0 and 1. The quotient of a highlight is a place in the table of highlights. Shares
+/// of red, green and blue are not divided. They have 29 fraction bits, and both ambient and diffuse light are multiplied by them.
+#[derive(Clone, Copy, Debug)]
+pub enum Colours<'a> {
+    /// A table of colours, for a light, and a highlight if there is one. A negative level counts as 0. With a highlight, 2^12 times the entry of the table is
+    /// added to the level; entries include ambient light. Without one, [`Lookup::top`] is added. Bits 19 to 27 of the sum are the index of a colour.
+    Table([&'a [u16; 512]; 2]),
+    /// One light, and its highlight if it has one.
+    Light([&'a Sums; 2]),
+    /// Two lights. The highlight of each follows its light. If only one of them has a highlight, it is the first.
+    TwoLights([&'a [Sums; 2]; 2]),
+    /// Sums of the light of several lights, in red, green and blue, and up to two highlights. The factors are those of highlights.
+    Summed([&'a Shares; 2]),
+    /// [`Self::Light`], followed by shares. The factors are those of the cosine and of the highlight.
+    PaintedLight([&'a Shares; 2]),
+    /// [`Self::Summed`], with shares between sums and highlights.
+    PaintedSum([&'a Shares; 2]),
 }
 
 /// A quadratic field: its value at column 0 of the coming row, its step to the next row, the step of that step, its slope, the step of the slope to the
 /// next row, and half its bend. All sums and products wrap.
 pub type Quadric = [i32; 6];
 
-/// Linear numerators in their order, and the quadratic square of the length by which they are divided.
-#[derive(Debug, Default)]
+/// Most numerators of a kernel.
+const NUMERATORS: usize = 8;
+
+/// Linear numerators, and the quadratic square of the length by which they are divided. Kernels step all of them.
+#[derive(Debug)]
 #[repr(C)]
 pub struct Fields<'a> {
-    /// The numerators.
-    pub planes: [Option<&'a mut Plane>; 4],
-    /// The square.
-    pub square: Option<&'a mut Quadric>,
+    square: Option<&'a mut Quadric>,
+    count: usize,
+    planes: [MaybeUninit<&'a mut Plane>; NUMERATORS],
 }
 
-#[cfg(kernels = "armv7m")]
-impl Fields<'_> {
-    /// Whether there are a square and so many numerators.
+impl Default for Fields<'_> {
     #[inline(always)]
-    fn has(&self, numerators: usize) -> bool {
-        // The test has no loop, so that the compiler decides it.
-        let [a, b, c, d] = &self.planes;
-        let is_lent = |plane: &Option<&mut Plane>, number| plane.is_some() || numerators < number;
-        self.square.is_some() && is_lent(a, 1) && is_lent(b, 2) && is_lent(c, 3) && is_lent(d, 4)
+    fn default() -> Self {
+        Self { square: None, count: 0, planes: [const { MaybeUninit::uninit() }; NUMERATORS] }
     }
 }
 
-#[cfg(kernels = "armv7m")]
-impl LitJob {
-    /// What a kernel reads; `None` if rows do not lie within the slices.
+impl<'a> Fields<'a> {
+    /// Adds a numerator. There is room for those of every kernel, and further ones are left out.
     #[inline(always)]
-    fn new<T>(rows: &mut Rows<'_>, lookup: Lookup<'_>, colours: [*const T; 2]) -> Option<Self> {
-        let lines = rows.lines(true)?;
-        let Lookup { roots, highlights, top } = lookup;
-        let highlights = highlights.map_or(core::ptr::null(), |table| table.as_ptr());
-        let (width, count) = (rows.width, rows.height << COUNTED);
-        Some(Self { colours: colours.map(<*const T>::cast), roots: roots.as_ptr(), highlights, top, width, count, pitch: 2 * width, lines })
-    }
-}
-
-/// Fills `rows` by numerators over the root of a square, with a depth test, under one light or two. The numerator of a light comes first. Its quotient is a
-/// level with 19 fraction bits, and a cosine of 1 is the level 2^7. If the light has a highlight, the numerator of the highlight follows. Its quotient is a
-/// place in the table of highlights. If only one of two lights has a highlight, it is the first. `sums` has colours for the first row and for the second,
-/// in turn. `FORMAT` is a [`Format`] as a number. Returns what [`ramp`] does. It is also `None` if fields or highlights are missing.
-#[inline(always)]
-#[must_use]
-pub fn lit<const FORMAT: u8, const LIGHTS: usize, const HIGHLIGHTS: usize>(
-    rows: Rows<'_>,
-    depth: &mut Plane,
-    mut fields: Fields<'_>,
-    lookup: Lookup<'_>,
-    sums: [&[Sums; LIGHTS]; 2],
-) -> Option<u32> {
-    const { assert!(FORMAT <= Format::Swapped as u8 && (LIGHTS == 1 || LIGHTS == 2) && HIGHLIGHTS <= LIGHTS) };
-    #[cfg(kernels = "armv7m")]
-    {
-        let mut rows = rows;
-        if !fields.has(LIGHTS + HIGHLIGHTS) || HIGHLIGHTS > 0 && lookup.highlights.is_none() {
-            return None;
+    pub fn add_numerator(&mut self, plane: &'a mut Plane) {
+        if let Some(to) = self.planes.get_mut(self.count) {
+            *to = MaybeUninit::new(plane);
+            self.count += 1;
         }
-        let Some(job) = LitJob::new(&mut rows, lookup, sums.map(core::ptr::from_ref)) else { return Some(0) };
-        // SAFETY: all rows lie within both slices, whose addresses are exposed, and columns are compared with the width; an index of 11 bits lies within the
-        // roots, and one of 12 bits within the highlights; there are all fields that the kernel steps, and factors of all lights.
-        unsafe {
-            Some(match (LIGHTS, HIGHLIGHTS) {
-                (1, 0) => lit::light::<FORMAT>(rows.sides, depth, &mut fields, &job),
-                (1, 1) => lit::light_and_highlight::<FORMAT>(rows.sides, depth, &mut fields, &job),
-                (2, 0) => lit::lights::<FORMAT>(rows.sides, depth, &mut fields, &job),
-                (2, 1) => lit::lights_and_highlight::<FORMAT>(rows.sides, depth, &mut fields, &job),
-                (2, 2) => lit::lights_and_highlights::<FORMAT>(rows.sides, depth, &mut fields, &job),
+    }
+
+    /// Sets the square.
+    #[inline(always)]
+    pub fn set_square(&mut self, square: &'a mut Quadric) {
+        self.square = Some(square);
+    }
+}
+
+/// A kernel.
+#[cfg(kernels = "armv7m")]
+type LitKernel = unsafe extern "C" fn(&mut Sides, &mut Plane, &mut Fields<'_>, &LitJob) -> u32;
+
+/// A kernel that computes light at each pixel, and what it reads. There are none for other processors.
+#[derive(Clone, Copy, Debug)]
+pub struct Lit<'a> {
+    #[cfg(kernels = "armv7m")]
+    kernel: LitKernel,
+    /// The number of numerators that it steps.
+    #[cfg(kernels = "armv7m")]
+    numerators: usize,
+    #[cfg(kernels = "armv7m")]
+    colours: [*const (); 2],
+    #[cfg(kernels = "armv7m")]
+    lookup: Lookup<'a>,
+    #[cfg(not(kernels = "armv7m"))]
+    none: (core::convert::Infallible, core::marker::PhantomData<&'a ()>),
+}
+
+impl<'a> Lit<'a> {
+    /// The kernel for these colours and so many highlights. `FORMAT` is a [`Format`] as a number. `None` if there is no kernel, or if there are highlights
+    /// without a table of highlights.
+    #[inline(always)]
+    #[must_use]
+    pub fn new<const FORMAT: u8>(colours: Colours<'a>, highlights: usize, lookup: Lookup<'a>) -> Option<Self> {
+        const { assert!(FORMAT <= Format::Swapped as u8) };
+        #[cfg(kernels = "armv7m")]
+        {
+            let (kernel, numerators): (LitKernel, usize) = match (colours, highlights) {
+                (Colours::Table(_), 0) => (lit::level, 1),
+                (Colours::Table(_), 1) => (lit::level_and_highlight, 2),
+                (Colours::Light(_), 0) => (lit::light::<FORMAT>, 1),
+                (Colours::Light(_), 1) => (lit::light_and_highlight::<FORMAT>, 2),
+                (Colours::TwoLights(_), 0) => (lit::lights::<FORMAT>, 2),
+                (Colours::TwoLights(_), 1) => (lit::lights_and_highlight::<FORMAT>, 3),
+                (Colours::TwoLights(_), 2) => (lit::lights_and_highlights::<FORMAT>, 4),
+                (Colours::Summed(_), 0) => (lit::sums::<FORMAT>, 3),
+                (Colours::Summed(_), 1) => (lit::sums_and_highlight::<FORMAT>, 4),
+                (Colours::Summed(_), 2) => (lit::sums_and_highlights::<FORMAT>, 5),
+                (Colours::PaintedLight(_), 0) => (lit::painted_light::<FORMAT>, 4),
+                (Colours::PaintedLight(_), 1) => (lit::painted_light_and_highlight::<FORMAT>, 5),
+                (Colours::PaintedSum(_), 0) => (lit::painted_sums::<FORMAT>, 6),
+                (Colours::PaintedSum(_), 1) => (lit::painted_sums_and_highlight::<FORMAT>, 7),
+                (Colours::PaintedSum(_), 2) => (lit::painted_sums_and_highlights::<FORMAT>, 8),
                 _ => return None,
-            })
+            };
+            fn address<T>(colours: [&T; 2]) -> [*const (); 2] {
+                colours.map(|colours| core::ptr::from_ref(colours).cast())
+            }
+            let colours = match colours {
+                Colours::Table(tables) => address(tables),
+                Colours::Light(sums) => address(sums),
+                Colours::TwoLights(sums) => address(sums),
+                Colours::Summed(shares) | Colours::PaintedLight(shares) | Colours::PaintedSum(shares) => address(shares),
+            };
+            (highlights == 0 || lookup.highlights.is_some()).then_some(Self { kernel, numerators, colours, lookup })
+        }
+        #[cfg(not(kernels = "armv7m"))]
+        {
+            let _ = (colours, highlights, lookup);
+            None
         }
     }
-    #[cfg(not(kernels = "armv7m"))]
-    {
-        let _ = (rows, depth, &mut fields, lookup, sums);
-        None
-    }
-}
 
-/// Fills `rows` as [`lit`] does, under one light of one channel. A negative level counts as 0. With a highlight, 2^12 times the entry of the table is added to
-/// the level; entries include ambient light. Without one, [`Lookup::top`] is added, which is the level of ambient light. Bits 19 to 27 of the sum are the
-/// index of a colour in `ramps`, which are for the first row and for the second, in turn.
-#[inline(always)]
-#[must_use]
-pub fn lit_ramp<const HIGHLIGHTS: usize>(
-    rows: Rows<'_>,
-    depth: &mut Plane,
-    mut fields: Fields<'_>,
-    lookup: Lookup<'_>,
-    ramps: [&[u16; 512]; 2],
-) -> Option<u32> {
-    const { assert!(HIGHLIGHTS <= 1) };
-    #[cfg(kernels = "armv7m")]
-    {
-        let mut rows = rows;
-        if !fields.has(1 + HIGHLIGHTS) || HIGHLIGHTS > 0 && lookup.highlights.is_none() {
-            return None;
+    /// The same, with the colours of the second row first.
+    #[must_use]
+    pub fn from_second_row(self) -> Self {
+        #[cfg(kernels = "armv7m")]
+        {
+            let [first, second] = self.colours;
+            Self { colours: [second, first], ..self }
         }
-        let Some(job) = LitJob::new(&mut rows, lookup, ramps.map(|ramp| ramp.as_ptr())) else { return Some(0) };
-        // SAFETY: as in `lit`; an index of 9 bits lies within a table of colours.
-        unsafe {
-            Some(if HIGHLIGHTS == 0 {
-                lit::level(rows.sides, depth, &mut fields, &job)
-            } else {
-                lit::level_and_highlight(rows.sides, depth, &mut fields, &job)
-            })
-        }
+        #[cfg(not(kernels = "armv7m"))]
+        self
     }
-    #[cfg(not(kernels = "armv7m"))]
-    {
-        let _ = (rows, depth, &mut fields, lookup, ramps);
-        None
+
+    /// Fills `rows`, with a depth test. The numerators of `fields` are those that [`Colours`] tells. Returns the number of pixels between the sides. If the
+    /// rows do not lie within the slices, a limit is exceeded, or a field is missing, it is 0, and nothing changes.
+    #[must_use]
+    pub fn fill(&self, rows: Rows<'_>, depth: &mut Plane, fields: &mut Fields<'_>) -> u32 {
+        #[cfg(kernels = "armv7m")]
+        {
+            let mut rows = rows;
+            let &Self { kernel, numerators, colours, lookup: Lookup { roots, highlights, top } } = self;
+            let Some(lines) = rows.lines(true).filter(|_| fields.square.is_some() && fields.count >= numerators) else { return 0 };
+            let highlights = highlights.map_or(core::ptr::null(), |table| table.as_ptr());
+            let (width, count) = (rows.width, rows.height << COUNTED);
+            let job = LitJob { colours, roots: roots.as_ptr(), highlights, top, width, count, pitch: 2 * width, lines };
+            // SAFETY: all rows lie within both slices, whose addresses are exposed, and columns are compared with the width; an index of 11 bits lies within
+            // the roots, one of 12 bits within the highlights, and one of 9 bits within a table of colours; the colours are those of the kernel; there are
+            // all fields that it steps.
+            unsafe { kernel(rows.sides, depth, fields, &job) }
+        }
+        #[cfg(not(kernels = "armv7m"))]
+        {
+            let _ = (rows, depth, fields);
+            match self.none.0 {}
+        }
     }
 }

@@ -7,32 +7,40 @@
 use crate::{COUNTED, Fields, Format, LitJob, Plane, Sides};
 use core::arch::naked_asm;
 
-/// Bytes of the polynomials of a row: three words of the square, and two of each numerator. Constants follow: the step of the depth, the way from pixels to
-/// depth, width, count, colours of this row and of the next, the tables of roots and of highlights, and the place in the latter.
-const fn constants(planes: usize) -> usize {
-    12 + 8 * planes
+/// Offset of a numerator: its slope, its value to the left of the row, its value at column 0 of the coming row, and its step to the next row. Three words of the
+/// square precede them.
+const fn numerator(number: usize) -> usize {
+    12 + 16 * number
 }
 
-/// Offset of what changes from row to row: both sides, depth, the square and its slope, the place in memory. Six words of their steps follow, the step of
-/// the step of the square, numerators, and steps of numerators.
+/// Offset of constants, which follow the numerators: the step of the depth, the way from pixels to depth, width, count, colours of this row and of the next,
+/// the tables of roots and of highlights, and the place in the latter.
+const fn constants(planes: usize) -> usize {
+    numerator(planes)
+}
+
+/// Offset of what changes from row to row: both sides, depth, the square and its slope, the place in memory. Six words of their steps follow, and the step of
+/// the step of the square.
 const fn changing(planes: usize) -> usize {
     constants(planes) + 36
 }
 
 /// Offset of the rows below the turn: their number, the side, and the line.
 const fn turn(planes: usize) -> usize {
-    changing(planes) + 52 + 8 * planes
+    changing(planes) + 52
 }
 
-/// Evaluates the numerator whose value to the left of the row and whose step lie at `$from` on the stack, and multiplies it by half the reciprocal length in
-/// `r3`. The result is in `$to`, and `$free` is overwritten.
+/// Evaluates the numerator whose slope and whose value to the left of the row lie at `$from` on the stack. The result is in `$to`, and `$free` is overwritten.
+macro_rules! linear {
+    ($to:literal, $free:literal, $from:literal) => {
+        concat!("ldrd ", $free, ", ", $to, ", [sp, #", $from, "]\n mla ", $to, ", ", $free, ", r10, ", $to, "\n")
+    };
+}
+
+/// Evaluates a numerator as [`linear`] does, and multiplies it by half the reciprocal length in `r3`.
 macro_rules! quotient {
     ($to:literal, $free:literal, $from:literal) => {
-        concat!(
-            concat!("ldrd ", $to, ", ", $free, ", [sp, #", $from, "]\n"),
-            concat!("mla ", $to, ", ", $free, ", r10, ", $to, "\n"),
-            concat!("smull ", $free, ", ", $to, ", r3, ", $to, "\n"),
-        )
+        concat!(linear!($to, $free, $from), "smull ", $free, ", ", $to, ", r3, ", $to, "\n")
     };
 }
 
@@ -79,12 +87,12 @@ macro_rules! pack {
     };
 }
 
-/// Defines a kernel for a number of numerators. `$pixel` makes the pixel of number `r10` and stores it at `[r0, r10, lsl #1]`. It finds half the reciprocal
+/// Defines a kernel for numerators of these numbers. `$pixel` makes the pixel of number `r10` and stores it at `[r0, r10, lsl #1]`. It finds half the reciprocal
 /// length in `r3`, the place in the table of highlights in `r8`, this table in `r9`, the colours of the row in `r12`, and the table of roots in
 /// `lr`. It may overwrite `r3` to `r7`. If it overwrites `r9` or `lr`, `$reload` loads them again before each pixel. If it overwrites `r8`, it loads `r8`
 /// itself before it uses it.
 macro_rules! kernel {
-    ($(#[$doc:meta])* $name:ident $(<$format:ident>)?, $planes:literal, $reload:expr, $pixel:expr) => {
+    ($(#[$doc:meta])* $name:ident $(<$format:ident>)?, [$($number:literal)*], $reload:expr, $pixel:expr) => {
         $(#[$doc])*
         #[unsafe(naked)]
         pub(crate) unsafe extern "C" fn $name $(<const $format: u8>)?(
@@ -104,22 +112,16 @@ macro_rules! kernel {
                 "str r8, [r12, #8]",
                 "strd r5, r7, [r12, #24]",
                 "str r10, [r12, #32]",
-                "ldr r4, [r2, #16]",
+                "ldr r4, [r2]",
                 "ldm r4, {{r4-r9}}",
                 "strd r4, r7, [r12, #12]",
                 "strd r5, r8, [r12, #36]",
                 "str r6, [r12, #48]",
                 "str r9, [sp, #8]",
-                "ldr r4, [r2, #0]\n ldm r4, {{r4-r6}}\n str r5, [sp, #16]\n str r4, [r12, #52]\n str r6, [r12, #52 + 4 * {planes}]",
-                ".if {planes} > 1",
-                "ldr r4, [r2, #4]\n ldm r4, {{r4-r6}}\n str r5, [sp, #24]\n str r4, [r12, #56]\n str r6, [r12, #56 + 4 * {planes}]",
-                ".endif",
-                ".if {planes} > 2",
-                "ldr r4, [r2, #8]\n ldm r4, {{r4-r6}}\n str r5, [sp, #32]\n str r4, [r12, #60]\n str r6, [r12, #60 + 4 * {planes}]",
-                ".endif",
-                ".if {planes} > 3",
-                "ldr r4, [r2, #12]\n ldm r4, {{r4-r6}}\n str r5, [sp, #40]\n str r4, [r12, #64]\n str r6, [r12, #64 + 4 * {planes}]",
-                ".endif",
+                $(
+                    concat!("ldr r4, [r2, #8 + 4 * ", $number, "]\n ldm r4, {{r4-r6}}"),
+                    concat!("str r5, [sp, #12 + 16 * ", $number, "]\n strd r4, r6, [sp, #20 + 16 * ", $number, "]"),
+                )*
                 "ldm r3!, {{r4-r11}}",
                 "strd r4, r5, [sp, #{constants} + 16]",
                 "strd r6, r7, [sp, #{constants} + 24]",
@@ -145,23 +147,12 @@ macro_rules! kernel {
                 "add r11, r5",
                 "stm r12!, {{r6-r11}}",
                 "str lr, [r12, #12]",
-                // Numerators, and their steps to the next row.
-                ".if {planes} == 1",
-                "ldrd r6, r7, [r12, #28]\n add r7, r6\n str r7, [r12, #28]",
-                ".endif",
-                ".if {planes} == 2",
-                "ldrd r6, r7, [r12, #28]\n ldrd r8, r9, [r12, #36]\n add r8, r6\n add r9, r7\n strd r8, r9, [r12, #28]",
-                ".endif",
-                ".if {planes} == 3",
-                "add r12, #28\n ldm r12, {{r6-r11}}\n add r9, r6\n add r10, r7\n add r11, r8\n stm r12, {{r9-r11}}",
-                ".endif",
-                ".if {planes} == 4",
-                "add r12, #28\n ldm r12!, {{r6-r9}}",
-                "ldrd r10, r11, [r12]\n add r10, r6\n add r11, r7\n strd r10, r11, [r12, #-16]",
-                "ldrd r10, r11, [r12, #8]\n add r10, r8\n add r11, r9\n strd r10, r11, [r12, #-8]",
-                ".endif",
                 "lsrs r0, r0, #21",
                 "lsrs r1, r1, #21",
+                "sub r12, r0, #1",
+                // Numerators to the left of the row, and on the next row.
+                "add r11, sp, #12",
+                $(concat!("ldm r11!, {{r6-r9}}\n mla r7, r6, r12, r8\n add r8, r9\n strd r7, r8, [sp, #16 + 16 * ", $number, "]"),)*
                 "subs r10, r1, r0",
                 "ble 4f",
                 "ldrd r11, lr, [sp, #{constants} + 8]",
@@ -171,7 +162,6 @@ macro_rules! kernel {
                 "str lr, [sp, #{constants} + 12]",
                 "ldrd r11, lr, [sp, #{constants}]",
                 "mla r2, r11, r1, r2",
-                "sub r12, r0, #1",
                 "add r0, r5, r0, lsl #1",
                 "add r1, r0, lr",
                 // The square at the place to the left of the row.
@@ -181,16 +171,6 @@ macro_rules! kernel {
                 "mla r3, r4, r12, r3",
                 "add r4, lr",
                 "strd r3, r4, [sp]",
-                "ldr r3, [sp, #16]\n mla r6, r3, r12, r6\n str r6, [sp, #12]",
-                ".if {planes} > 1",
-                "ldr r3, [sp, #24]\n mla r7, r3, r12, r7\n str r7, [sp, #20]",
-                ".endif",
-                ".if {planes} > 2",
-                "ldr r3, [sp, #32]\n mla r8, r3, r12, r8\n str r8, [sp, #28]",
-                ".endif",
-                ".if {planes} > 3",
-                "ldr r3, [sp, #40]\n mla r9, r3, r12, r9\n str r9, [sp, #36]",
-                ".endif",
                 "ldr r12, [sp, #{constants} + 16]",
                 "ldrd lr, r9, [sp, #{constants} + 24]",
                 "ldr r8, [sp, #{constants} + 32]",
@@ -239,25 +219,15 @@ macro_rules! kernel {
                 "strd r5, r11, [r1, #8]",
                 "str r6, [r2]",
                 "ldr r4, [r12, #36]",
-                "ldr r5, [r3, #16]",
+                "ldr r5, [r3]",
                 "strd r7, r4, [r5]",
                 "str r8, [r5, #12]",
-                "ldr r4, [r12, #52]\n ldr r5, [r3, #0]\n str r4, [r5]",
-                ".if {planes} > 1",
-                "ldr r4, [r12, #56]\n ldr r5, [r3, #4]\n str r4, [r5]",
-                ".endif",
-                ".if {planes} > 2",
-                "ldr r4, [r12, #60]\n ldr r5, [r3, #8]\n str r4, [r5]",
-                ".endif",
-                ".if {planes} > 3",
-                "ldr r4, [r12, #64]\n ldr r5, [r3, #12]\n str r4, [r5]",
-                ".endif",
+                $(concat!("ldr r4, [sp, #20 + 16 * ", $number, "]\n ldr r5, [r3, #8 + 4 * ", $number, "]\n str r4, [r5]"),)*
                 "add sp, #{turn} + 28",
                 "pop {{r4-r11, pc}}",
-                planes = const $planes,
-                constants = const constants($planes),
-                changing = const changing($planes),
-                turn = const turn($planes),
+                constants = const constants([$($number),*].len()),
+                changing = const changing([$($number),*].len()),
+                turn = const turn([$($number),*].len()),
                 one = const 1 << COUNTED,
                 $(
                     format = const $format,
@@ -272,7 +242,7 @@ macro_rules! kernel {
 kernel!(
     /// One light, in three channels.
     light<FORMAT>,
-    1,
+    [0],
     "",
     concat!(
         quotient!("r4", "r5", 12),
@@ -286,11 +256,11 @@ kernel!(
 kernel!(
     /// One light with a highlight, in three channels.
     light_and_highlight<FORMAT>,
-    2,
+    [0 1],
     "",
     concat!(
         quotient!("r4", "r5", 12),
-        quotient!("r5", "r6", 20),
+        quotient!("r5", "r6", 28),
         highlight!("r5", "r8"),
         cosine!("r4"),
         "ldm r12, {{r3, r6, r7}}\n mla r3, r6, r4, r3\n mla r3, r7, r5, r3\n",
@@ -302,11 +272,11 @@ kernel!(
 kernel!(
     /// Two lights, in three channels.
     lights<FORMAT>,
-    2,
+    [0 1],
     "",
     concat!(
         quotient!("r4", "r5", 12),
-        quotient!("r5", "r6", 20),
+        quotient!("r5", "r6", 28),
         cosine!("r4"),
         cosine!("r5"),
         "ldrd r3, r6, [r12]\n mla r3, r6, r4, r3\n ldr r6, [r12, #40]\n mla r3, r6, r5, r3\n",
@@ -318,12 +288,12 @@ kernel!(
 kernel!(
     /// Two lights, the first with a highlight, in three channels.
     lights_and_highlight<FORMAT>,
-    3,
+    [0 1 2],
     "ldr lr, [sp, #{constants} + 24]",
     concat!(
         quotient!("r4", "r5", 12),
-        quotient!("r5", "r6", 20),
-        quotient!("r6", "r7", 28),
+        quotient!("r5", "r6", 28),
+        quotient!("r6", "r7", 44),
         highlight!("r5", "r8"),
         cosine!("r4"),
         cosine!("r6"),
@@ -340,13 +310,13 @@ kernel!(
 kernel!(
     /// Two lights with highlights, in three channels.
     lights_and_highlights<FORMAT>,
-    4,
+    [0 1 2 3],
     "ldrd lr, r9, [sp, #{constants} + 24]",
     concat!(
         quotient!("r4", "r5", 12),
-        quotient!("r5", "r6", 20),
-        quotient!("r6", "r7", 28),
-        quotient!("r7", "r8", 36),
+        quotient!("r5", "r6", 28),
+        quotient!("r6", "r7", 44),
+        quotient!("r7", "r8", 60),
         "ldr r8, [sp, #{constants} + 32]\n",
         highlight!("r5", "r8"),
         highlight!("r7", "r8"),
@@ -366,6 +336,204 @@ kernel!(
     )
 );
 
+/// Adds the sum in `$sum` to the ambient light of the channel whose colours lie at `$at`. The level is in `$to`.
+macro_rules! sum {
+    ($to:literal, $sum:literal, $at:literal) => {
+        concat!("ldr ", $to, ", [r12, #4 + ", $at, "]\n add ", $to, ", ", $to, ", ", $sum, ", lsl #3\n")
+    };
+}
+
+/// Adds the highlight in `r7` to the level in `$to`. Its factor is the third number of the channel, or another one.
+macro_rules! add_highlight {
+    ($to:literal, $at:literal) => {
+        add_highlight!(8; $to, $at)
+    };
+    ($factor:literal; $to:literal, $at:literal) => {
+        concat!("ldr lr, [r12, #", $factor, " + ", $at, "]\n mla ", $to, ", lr, r7, ", $to, "\n")
+    };
+}
+
+/// Adds the highlights in `r7` and `r8` to the level in `$to`. `$free` and `lr` are overwritten.
+macro_rules! add_highlights {
+    ($to:literal, $free:literal, $at:literal) => {
+        concat!(
+            concat!("ldrd ", $free, ", lr, [r12, #8 + ", $at, "]\n"),
+            concat!("mla ", $to, ", ", $free, ", r7, ", $to, "\n mla ", $to, ", lr, r8, ", $to, "\n"),
+        )
+    };
+}
+
+/// Multiplies the level in `$level` by the colour whose numerator lies at `$colour` on the stack, and adds `r9`. The result is in `$to`, and `lr` is
+/// overwritten.
+macro_rules! paint {
+    ($to:literal, $level:literal, $colour:literal) => {
+        concat!(
+            concat!("asr ", $level, ", ", $level, ", #15\n"),
+            linear!("lr", $to, $colour),
+            concat!("asr lr, lr, #14\n mla ", $to, ", ", $level, ", lr, r9\n"),
+        )
+    };
+}
+
+/// Adds the sum in `$sum` to ambient light, and multiplies both by a colour.
+macro_rules! painted_sum {
+    ($to:literal, $sum:literal, $colour:literal, $at:literal) => {
+        concat!(
+            concat!("ldrd r9, lr, [r12, #", $at, "]\n add ", $sum, ", lr, ", $sum, ", lsl #3\n"),
+            paint!($to, $sum, $colour)
+        )
+    };
+}
+
+/// Adds the light of the cosine in `r4` to ambient light, and multiplies both by a colour.
+macro_rules! painted_light {
+    ($to:literal, $colour:literal, $at:literal) => {
+        concat!(
+            concat!("ldrd r9, lr, [r12, #", $at, "]\n ldr r6, [r12, #8 + ", $at, "]\n mla r6, r6, r4, lr\n"),
+            paint!($to, "r6", $colour)
+        )
+    };
+}
+
+/// The quotients of sums in `r4` to `r6`. Before them, the second one is free.
+macro_rules! sums {
+    () => {
+        concat!(quotient!("r4", "lr", 12), quotient!("r5", "lr", 28), quotient!("r6", "lr", 44))
+    };
+}
+
+/// The highlights of two lights in `r7` and `r8`.
+macro_rules! two_highlights {
+    ($first:literal, $second:literal) => {
+        concat!(
+            quotient!("r7", "lr", $first),
+            quotient!("r8", "lr", $second),
+            "ldr lr, [sp, #{constants} + 32]\n",
+            highlight!("r7", "lr"),
+            highlight!("r8", "lr"),
+        )
+    };
+}
+
+kernel!(
+    /// Sums of lights.
+    sums<FORMAT>,
+    [0 1 2],
+    "ldr lr, [sp, #{constants} + 24]",
+    concat!(sums!(), sum!("r3", "r4", 0), sum!("r4", "r5", 16), pack!("r4", sum!("r4", "r6", 32)))
+);
+
+kernel!(
+    /// Sums of lights with a highlight.
+    sums_and_highlight<FORMAT>,
+    [0 1 2 3],
+    "ldr lr, [sp, #{constants} + 24]",
+    concat!(
+        quotient!("r7", "lr", 60),
+        highlight!("r7", "r8"),
+        sums!(),
+        sum!("r3", "r4", 0),
+        add_highlight!("r3", 0),
+        sum!("r4", "r5", 16),
+        add_highlight!("r4", 16),
+        pack!("r4", concat!(sum!("r4", "r6", 32), add_highlight!("r4", 32))),
+    )
+);
+
+kernel!(
+    /// Sums of lights with two highlights.
+    sums_and_highlights<FORMAT>,
+    [0 1 2 3 4],
+    "ldr lr, [sp, #{constants} + 24]",
+    concat!(
+        two_highlights!(60, 76),
+        sums!(),
+        sum!("r3", "r4", 0),
+        add_highlights!("r3", "r4", 0),
+        sum!("r4", "r5", 16),
+        add_highlights!("r4", "r5", 16),
+        pack!("r4", concat!(sum!("r4", "r6", 32), add_highlights!("r4", "r6", 32))),
+    )
+);
+
+kernel!(
+    /// Sums of lights on a surface whose colour is walked.
+    painted_sums<FORMAT>,
+    [0 1 2 3 4 5],
+    "ldr lr, [sp, #{constants} + 24]",
+    concat!(
+        sums!(),
+        painted_sum!("r3", "r4", 60, 0),
+        painted_sum!("r4", "r5", 76, 16),
+        pack!("r4", painted_sum!("r4", "r6", 92, 32)),
+    )
+);
+
+kernel!(
+    /// Sums of lights with a highlight on a surface whose colour is walked.
+    painted_sums_and_highlight<FORMAT>,
+    [0 1 2 3 4 5 6],
+    "ldrd lr, r9, [sp, #{constants} + 24]",
+    concat!(
+        quotient!("r7", "lr", 108),
+        highlight!("r7", "r8"),
+        sums!(),
+        painted_sum!("r3", "r4", 60, 0),
+        add_highlight!("r3", 0),
+        painted_sum!("r4", "r5", 76, 16),
+        add_highlight!("r4", 16),
+        pack!("r4", concat!(painted_sum!("r4", "r6", 92, 32), add_highlight!("r4", 32))),
+    )
+);
+
+kernel!(
+    /// Sums of lights with two highlights on a surface whose colour is walked.
+    painted_sums_and_highlights<FORMAT>,
+    [0 1 2 3 4 5 6 7],
+    "ldrd lr, r9, [sp, #{constants} + 24]",
+    concat!(
+        two_highlights!(108, 124),
+        sums!(),
+        painted_sum!("r3", "r4", 60, 0),
+        add_highlights!("r3", "r9", 0),
+        painted_sum!("r4", "r5", 76, 16),
+        add_highlights!("r4", "r9", 16),
+        pack!("r4", concat!(painted_sum!("r4", "r6", 92, 32), add_highlights!("r4", "r9", 32))),
+    )
+);
+
+kernel!(
+    /// One light on a surface whose colour is walked.
+    painted_light<FORMAT>,
+    [0 1 2 3],
+    "ldr lr, [sp, #{constants} + 24]",
+    concat!(
+        quotient!("r4", "r5", 12),
+        cosine!("r4"),
+        painted_light!("r3", 28, 0),
+        painted_light!("r5", 44, 16),
+        pack!("r5", painted_light!("r5", 60, 32)),
+    )
+);
+
+kernel!(
+    /// One light with a highlight on a surface whose colour is walked.
+    painted_light_and_highlight<FORMAT>,
+    [0 1 2 3 4],
+    "ldrd lr, r9, [sp, #{constants} + 24]",
+    concat!(
+        quotient!("r4", "r5", 12),
+        quotient!("r7", "r5", 28),
+        highlight!("r7", "r8"),
+        cosine!("r4"),
+        painted_light!("r3", 44, 0),
+        add_highlight!(12; "r3", 0),
+        painted_light!("r5", 60, 16),
+        add_highlight!(12; "r5", 16),
+        pack!("r5", concat!(painted_light!("r5", 76, 32), add_highlight!(12; "r5", 32))),
+    )
+);
+
 /// The colour of a level in `r4`, to which `$add` adds.
 macro_rules! colour {
     ($add:literal) => {
@@ -376,7 +544,7 @@ macro_rules! colour {
 kernel!(
     /// One light, by a table of colours. `r8` is the level of ambient light here.
     level,
-    1,
+    [0],
     "",
     concat!(quotient!("r4", "r5", 12), colour!("add r4, r8"))
 );
@@ -384,7 +552,7 @@ kernel!(
 kernel!(
     /// One light with a highlight, by a table of colours.
     level_and_highlight,
-    2,
+    [0 1],
     "",
-    concat!(quotient!("r4", "r5", 12), quotient!("r5", "r6", 20), highlight!("r5", "r8"), colour!("add r4, r4, r5, lsl #12"))
+    concat!(quotient!("r4", "r5", 12), quotient!("r5", "r6", 28), highlight!("r5", "r8"), colour!("add r4, r4, r5, lsl #12"))
 );

@@ -49,8 +49,8 @@ impl<P: Patch<Walker: Copy>> Patch for ByColumn<P> {
     }
 
     #[inline(always)]
-    fn lend<'a>(&'a mut self, fields: &mut Fields<'a>, first: usize) {
-        self.0.lend(fields, first);
+    fn lend<'a>(&'a mut self, fields: &mut Fields<'a>) {
+        self.0.lend(fields);
     }
 
     #[inline(always)]

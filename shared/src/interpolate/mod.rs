@@ -56,9 +56,9 @@ pub trait Patch: Copy {
         &mut []
     }
 
-    /// Lends its planes to a kernel as numerators, from number `first` on, and its quadratic as the square.
+    /// Lends its planes to a kernel as numerators, and its quadratic as the square.
     #[inline(always)]
-    fn lend<'a>(&'a mut self, _fields: &mut Fields<'a>, _first: usize) {}
+    fn lend<'a>(&'a mut self, _fields: &mut Fields<'a>) {}
 
     /// The polynomial that has been saved in `words`.
     #[inline(always)]
@@ -184,9 +184,9 @@ impl<A: Patch, B: Patch> Patch for (A, B) {
     };
 
     #[inline(always)]
-    fn lend<'a>(&'a mut self, fields: &mut Fields<'a>, first: usize) {
-        self.0.lend(fields, first);
-        self.1.lend(fields, first + A::FIELDS.map_or(0, |[planes, _]| planes));
+    fn lend<'a>(&'a mut self, fields: &mut Fields<'a>) {
+        self.0.lend(fields);
+        self.1.lend(fields);
     }
 
     #[inline(always)]

@@ -52,6 +52,12 @@ impl<const CH: usize> Plane<CH> {
     /// A constant, so that no loop clears one channel after the other.
     const ZERO: Self = Self([PlaneRow { c: 0, dx: 0, dy: 0 }; CH]);
 
+    /// The linear fields of one channel each, side by side.
+    #[inline(always)]
+    pub(crate) fn side_by_side(fields: [Plane<1>; CH]) -> Self {
+        Self(fields.map(|Plane([row])| row))
+    }
+
     /// The linear field with the value `nodes[channel][k]` at corner `k`. Nodes lie in a range narrower than 2^`BITS`. Values are walked with `extra`
     /// more fraction bits than nodes have, and with `bias` added.
     ///
@@ -139,9 +145,9 @@ impl<const CH: usize> Patch for Plane<CH> {
     }
 
     #[inline(always)]
-    fn lend<'a>(&'a mut self, fields: &mut Fields<'a>, first: usize) {
-        for (to, plane) in fields.planes.iter_mut().skip(first).zip(self.planes()) {
-            *to = Some(plane);
+    fn lend<'a>(&'a mut self, fields: &mut Fields<'a>) {
+        for plane in self.planes() {
+            fields.add_numerator(plane);
         }
     }
 

@@ -179,8 +179,10 @@ impl<const CH: usize> Patch for Quadric<CH> {
     const FIELDS: Option<[usize; 2]> = Some([0, CH]);
 
     #[inline(always)]
-    fn lend<'a>(&'a mut self, fields: &mut Fields<'a>, _: usize) {
-        fields.square = self.0.first_mut().map(|row| transmute_mut!(row));
+    fn lend<'a>(&'a mut self, fields: &mut Fields<'a>) {
+        if let Some(row) = self.0.first_mut() {
+            fields.set_square(transmute_mut!(row));
+        }
     }
 
     #[inline(always)]

@@ -4,7 +4,10 @@ use crate::{
     arch::product::{unsigned_product, upper},
     format::{BIAS, CHANNEL, COSINE, INTENSITY, LEVEL, RAMP},
     lighting::albedo::SHARE,
-    math::highlight_lut::ENTRY,
+    math::{
+        highlight_lut::ENTRY,
+        vector::{map, zip},
+    },
     pixel::{
         Pixel,
         by_rows::{ByRows, ByTurns},
@@ -14,7 +17,7 @@ use crate::{
     },
     stream::record::Colour,
 };
-use microphong_kernels as kernels;
+use microphong_kernels::{self as kernels, Shares};
 use zerocopy::{FromBytes, Immutable, IntoBytes, KnownLayout, transmute_ref};
 
 /// A light with a highlight: a walked diffuse level, negative where there is no light, and an entry of the table of highlights.
@@ -104,9 +107,9 @@ pub trait Shades<L>: LitColours {
     /// The number of numerators of the light that a kernel in assembler divides by a length; 0 if there is no kernel.
     const NUMERATORS: usize = 0;
 
-    /// Fills rows by the kernel, see [`kernels::lit`].
+    /// The kernel.
     #[inline(always)]
-    fn fill(&self, _: kernels::Rows<'_>, _: (&mut kernels::Plane, kernels::Fields<'_>), _: kernels::Lookup<'_>) -> Option<u32> {
+    fn lit<'a>(&'a self, _: kernels::Lookup<'a>) -> Option<kernels::Lit<'a>> {
         None
     }
 }
@@ -172,14 +175,9 @@ impl<C: Pixel> Shades<WithHighlight> for OneLightRamp<'_, C> {
     const NUMERATORS: usize = 2;
 
     #[inline(always)]
-    fn fill(
-        &self,
-        rows: kernels::Rows<'_>,
-        (depth, fields): (&mut kernels::Plane, kernels::Fields<'_>),
-        lookup: kernels::Lookup<'_>,
-    ) -> Option<u32> {
+    fn lit<'k>(&'k self, lookup: kernels::Lookup<'k>) -> Option<kernels::Lit<'k>> {
         let [even, odd] = self.ramps.both();
-        kernels::lit_ramp::<1>(rows, depth, fields, lookup, [C::ramp(even)?, C::ramp(odd)?])
+        C::lit(kernels::Colours::Table([C::ramp(even)?, C::ramp(odd)?]), 1, lookup)
     }
 }
 
@@ -191,15 +189,10 @@ impl<C: Pixel> Shades<DiffuseOnly> for OneLightRamp<'_, C> {
     const NUMERATORS: usize = 1;
 
     #[inline(always)]
-    fn fill(
-        &self,
-        rows: kernels::Rows<'_>,
-        (depth, fields): (&mut kernels::Plane, kernels::Fields<'_>),
-        lookup: kernels::Lookup<'_>,
-    ) -> Option<u32> {
+    fn lit<'k>(&'k self, lookup: kernels::Lookup<'k>) -> Option<kernels::Lit<'k>> {
         let [even, odd] = self.ramps.both();
         let lookup = kernels::Lookup { top: (self.floor << (KERNEL_BITS - LEVEL)) as i32, ..lookup };
-        kernels::lit_ramp::<0>(rows, depth, fields, lookup, [C::ramp(even)?, C::ramp(odd)?])
+        C::lit(kernels::Colours::Table([C::ramp(even)?, C::ramp(odd)?]), 0, lookup)
     }
 }
 
@@ -311,7 +304,7 @@ impl<'a, C> OneLightRgb<'a, C> {
 
     /// The sums as kernels read them.
     #[inline(always)]
-    fn in_kernels(&self) -> [&'a [kernels::Sums; 1]; 2] {
+    fn in_kernels(&self) -> [&'a kernels::Sums; 2] {
         self.0.both().map(|sums| transmute_ref!(sums))
     }
 }
@@ -356,13 +349,8 @@ impl<C: Pixel> Shades<WithHighlight> for OneLightRgb<'_, C> {
     const NUMERATORS: usize = 2;
 
     #[inline(always)]
-    fn fill(
-        &self,
-        rows: kernels::Rows<'_>,
-        fields: (&mut kernels::Plane, kernels::Fields<'_>),
-        lookup: kernels::Lookup<'_>,
-    ) -> Option<u32> {
-        C::fill_lit::<1, 1>(rows, fields, lookup, self.in_kernels())
+    fn lit<'k>(&'k self, lookup: kernels::Lookup<'k>) -> Option<kernels::Lit<'k>> {
+        C::lit(kernels::Colours::Light(self.in_kernels()), 1, lookup)
     }
 }
 
@@ -377,28 +365,34 @@ impl<C: Pixel> Shades<DiffuseOnly> for OneLightRgb<'_, C> {
     const NUMERATORS: usize = 1;
 
     #[inline(always)]
-    fn fill(
-        &self,
-        rows: kernels::Rows<'_>,
-        fields: (&mut kernels::Plane, kernels::Fields<'_>),
-        lookup: kernels::Lookup<'_>,
-    ) -> Option<u32> {
-        C::fill_lit::<1, 0>(rows, fields, lookup, self.in_kernels())
+    fn lit<'k>(&'k self, lookup: kernels::Lookup<'k>) -> Option<kernels::Lit<'k>> {
+        C::lit(kernels::Colours::Light(self.in_kernels()), 0, lookup)
     }
 }
 
-/// Three channels under one light on a surface whose colour changes from pixel to pixel.
+/// Three channels under one light on a surface whose colour changes from pixel to pixel. In the shares of a channel, a number for rounding and dither and
+/// the level of ambient light precede the factors of [`Sum`].
 #[derive(Clone, Copy, Debug)]
-pub struct ColouredRgb<'a, C> {
-    pub(super) sums: OneLightRgb<'a, C>,
-    /// See [`Reflectance::pure_ambient`](super::reflectance::Reflectance::pure_ambient).
-    pub(super) ambient: [i32; 3],
+pub struct ColouredRgb<'a, C>(ByTurns<&'a Shares, C>);
+
+impl<'a, C: Pixel> ColouredRgb<'a, C> {
+    /// The colours of these shares for even rows and for odd ones.
+    pub(crate) fn of([even, odd]: &'a [Shares; 2]) -> Self {
+        Self(ByTurns::new([even, odd]))
+    }
+}
+
+impl Sum {
+    /// The sum as a channel of [`ColouredRgb`]. `ambient` is the level of ambient light alone.
+    pub(super) fn shares(&self, ambient: i32) -> [i32; 4] {
+        [self.ambient.wrapping_sub(ambient), ambient, self.diffuse, self.specular]
+    }
 }
 
 impl<C: Pixel> ByRows for ColouredRgb<'_, C> {
     #[inline(always)]
     fn step_row(&mut self) {
-        self.sums.step_row();
+        self.0.step_row();
     }
 }
 
@@ -408,22 +402,27 @@ impl<C: Pixel> LitColours for ColouredRgb<'_, C> {
     const TABLED: bool = false;
 
     fn diffuse(&self) -> u16 {
-        self.sums.diffuse()
+        OneLightRgb::<C>::DIFFUSE
     }
 }
 
-impl<C: Pixel, L: Into<WithHighlight>> Shades<Coloured<L>> for ColouredRgb<'_, C> {
+impl<C: Pixel, L: MayHaveHighlight> Shades<Coloured<L>> for ColouredRgb<'_, C> {
     #[inline(always)]
     fn colour(&self, bits: u32, Coloured(light, [red, green, blue]): Coloured<L>) -> C {
         let WithHighlight(diffuse, highlight) = light.into();
-        let (sums, [r, g, b], cosine, highlight) = (self.sums.0.now(), self.ambient, cosine(bits, diffuse), highlight as i32);
-        let level = |sum: &Sum, ambient: i32, share: u32| {
-            let reflected = painted(ambient.wrapping_add(sum.diffuse.wrapping_mul(cosine)), share);
-            // What the sum has more than ambient light is for rounding.
-            reflected.wrapping_add(sum.ambient.wrapping_sub(ambient)).wrapping_add(sum.specular.wrapping_mul(highlight))
+        let ([r, g, b], cosine, highlight) = (self.0.now(), cosine(bits, diffuse), highlight as i32);
+        let level = |&[rounding, ambient, diffuse, specular]: &[i32; 4], share: u32| {
+            let reflected = painted(ambient.wrapping_add(diffuse.wrapping_mul(cosine)), share);
+            reflected.wrapping_add(rounding).wrapping_add(specular.wrapping_mul(highlight))
         };
-        let [sum_r, sum_g, sum_b] = sums;
-        C::mixed([level(sum_r, r, red), level(sum_g, g, green), level(sum_b, b, blue)])
+        C::mixed([level(r, red), level(g, green), level(b, blue)])
+    }
+
+    const NUMERATORS: usize = 4 + L::HIGHLIGHTS;
+
+    #[inline(always)]
+    fn lit<'k>(&'k self, lookup: kernels::Lookup<'k>) -> Option<kernels::Lit<'k>> {
+        C::lit(kernels::Colours::PaintedLight(self.0.both()), L::HIGHLIGHTS, lookup)
     }
 }
 
@@ -589,6 +588,25 @@ impl<'a, C: Pixel> SummedColours<'a, C> {
         SummedColours { ambient: ByTurns::new([even, odd]), ..*self }
     }
 
+    /// Whether levels have no fewer fraction bits than [`SummedRgb`] has.
+    #[inline(always)]
+    pub(crate) fn is_fine(&self) -> bool {
+        self.bits == CHANNEL - INTENSITY
+    }
+
+    /// The colours with the factors of two highlights for [`SummedRgb`]: of a surface of one colour, or where `pure` is the level of ambient light alone.
+    #[inline(always)]
+    pub(crate) fn shares(&self, pure: Option<&[i32; 3]>, [first, second]: [[i32; 3]; 2]) -> [Shares; 2] {
+        self.ambient.both().map(|sums| {
+            let levels = map(*sums, Sum::ambient);
+            let ambient = match pure {
+                Some(&pure) => zip(levels, pure, |level, pure| [level.wrapping_sub(pure), pure]),
+                None => map(levels, |level| [0, level]),
+            };
+            zip(ambient, zip(first, second, |a, b| [a, b]), |[rounding, ambient], [a, b]| [rounding, ambient, a, b])
+        })
+    }
+
     /// The levels of this diffuse light and of ambient light.
     #[inline(always)]
     pub(crate) fn levels(&self, Summed([red, green, blue]): Summed) -> [i32; 3] {
@@ -620,6 +638,90 @@ impl<'a, C: Pixel> SummedColours<'a, C> {
         }
         let level = |level: i32| intensity(level, 0) << (CHANNEL - INTENSITY);
         C::mixed([level(r), level(g), level(b)])
+    }
+}
+
+/// The diffuse light of several lights, and entries of the table of two highlights.
+#[derive(Clone, Copy, Debug)]
+pub(crate) struct SummedWithHighlights(pub(crate) Summed, pub(crate) [u32; 2]);
+
+/// Three channels of [`SummedWithHighlights`], for kernels. In the shares of a channel, a number for rounding and dither and the level of ambient light
+/// precede the factors of highlights. The first number is not used on a surface of one colour, and the second includes it.
+#[derive(Clone, Copy, Debug)]
+pub(crate) struct SummedRgb<'a, C> {
+    shares: ByTurns<&'a Shares, C>,
+    /// Number of highlights. Kernels leave out the others, whose factors are 0.
+    highlights: usize,
+}
+
+impl<'a, C: Pixel> SummedRgb<'a, C> {
+    /// The colours of these shares for even rows and for odd ones.
+    pub(crate) fn of([even, odd]: &'a [Shares; 2], highlights: usize) -> Self {
+        Self { shares: ByTurns::new([even, odd]), highlights }
+    }
+}
+
+impl<C: Pixel> ByRows for SummedRgb<'_, C> {
+    #[inline(always)]
+    fn step_row(&mut self) {
+        self.shares.step_row();
+    }
+}
+
+impl<C: Pixel> LitColours for SummedRgb<'_, C> {
+    type Pixel = C;
+
+    const TABLED: bool = false;
+
+    fn diffuse(&self) -> u16 {
+        OneLightRgb::<C>::DIFFUSE
+    }
+}
+
+/// Adds a sum to the ambient light of a channel.
+#[inline(always)]
+fn summed(&[_, ambient, ..]: &[i32; 4], sum: i32) -> i32 {
+    ambient.wrapping_add(sum << (CHANNEL - SUMMED))
+}
+
+/// Adds highlights to the level of a channel.
+#[inline(always)]
+fn highlit(level: i32, &[_, _, first, second]: &[i32; 4], [one, two]: [u32; 2]) -> i32 {
+    level.wrapping_add(first.wrapping_mul(one as i32)).wrapping_add(second.wrapping_mul(two as i32))
+}
+
+impl<C: Pixel> Shades<SummedWithHighlights> for SummedRgb<'_, C> {
+    #[inline(always)]
+    fn colour(&self, _: u32, SummedWithHighlights(Summed([red, green, blue]), highlights): SummedWithHighlights) -> C {
+        let [r, g, b] = self.shares.now();
+        let level = |shares: &[i32; 4], sum: i32| highlit(summed(shares, sum), shares, highlights);
+        C::mixed([level(r, red), level(g, green), level(b, blue)])
+    }
+
+    const NUMERATORS: usize = 5;
+
+    #[inline(always)]
+    fn lit<'k>(&'k self, lookup: kernels::Lookup<'k>) -> Option<kernels::Lit<'k>> {
+        C::lit(kernels::Colours::Summed(self.shares.both()), self.highlights, lookup)
+    }
+}
+
+impl<C: Pixel> Shades<Coloured<SummedWithHighlights>> for SummedRgb<'_, C> {
+    #[inline(always)]
+    fn colour(&self, _: u32, Coloured(light, [red, green, blue]): Coloured<SummedWithHighlights>) -> C {
+        let (SummedWithHighlights(Summed(sums), highlights), [r, g, b]) = (light, self.shares.now());
+        let level = |shares: &[i32; 4], sum: i32, share: u32| {
+            let [rounding, ..] = shares;
+            highlit(painted(summed(shares, sum), share).wrapping_add(*rounding), shares, highlights)
+        };
+        C::mixed([level(r, sums[0], red), level(g, sums[1], green), level(b, sums[2], blue)])
+    }
+
+    const NUMERATORS: usize = 8;
+
+    #[inline(always)]
+    fn lit<'k>(&'k self, lookup: kernels::Lookup<'k>) -> Option<kernels::Lit<'k>> {
+        C::lit(kernels::Colours::PaintedSum(self.shares.both()), self.highlights, lookup)
     }
 }
 
@@ -664,19 +766,9 @@ impl<C: Pixel, A: MayHaveHighlight, B: MayHaveHighlight> Shades<(A, B)> for TwoL
     const NUMERATORS: usize = if A::HIGHLIGHTS < B::HIGHLIGHTS { 0 } else { 2 + A::HIGHLIGHTS + B::HIGHLIGHTS };
 
     #[inline(always)]
-    fn fill(
-        &self,
-        rows: kernels::Rows<'_>,
-        fields: (&mut kernels::Plane, kernels::Fields<'_>),
-        lookup: kernels::Lookup<'_>,
-    ) -> Option<u32> {
+    fn lit<'k>(&'k self, lookup: kernels::Lookup<'k>) -> Option<kernels::Lit<'k>> {
         let sums = self.0.both().map(|sums| transmute_ref!(sums));
-        match (A::HIGHLIGHTS, B::HIGHLIGHTS) {
-            (0, 0) => C::fill_lit::<2, 0>(rows, fields, lookup, sums),
-            (1, 0) => C::fill_lit::<2, 1>(rows, fields, lookup, sums),
-            (1, 1) => C::fill_lit::<2, 2>(rows, fields, lookup, sums),
-            _ => None,
-        }
+        C::lit(kernels::Colours::TwoLights(sums), A::HIGHLIGHTS + B::HIGHLIGHTS, lookup)
     }
 }
 

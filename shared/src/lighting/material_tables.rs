@@ -5,12 +5,13 @@ use crate::{
     format::{BIAS, CHANNEL, COSINE, FULL, INTENSITY, LEVEL, WALK},
     lighting::{
         albedo::Albedo,
-        constant_lights::{ColouredRgb, FACTOR, NeutralRgb, OneLightRamp, OneLightRgb, SummedColours, Sums, Tint, TintLevel, TwoLightsRgb},
+        constant_lights::{FACTOR, NeutralRgb, OneLightRamp, OneLightRgb, SummedColours, Sums, Tint, TintLevel, TwoLightsRgb},
         reflectance::{LitMaterial, Reflectance},
     },
     math::vector::zip,
     pixel::{Pixel, by_rows::ByTurns, gamma::Gamma, half_step, ramps::Ramps, steps},
 };
+use microphong_kernels::Shares;
 
 /// The colours of a material in a pixel format.
 #[derive(Clone, Copy, Debug)]
@@ -88,13 +89,15 @@ impl<'a, C: Pixel> MaterialTables<'a, C> {
         self.three_channels().then_some(self.sums())
     }
 
-    /// The colours of a surface whose corners have colours, under the only light. Domain: [`Reflectance::lights`] is 1, three channels.
-    #[inline(always)]
-    pub(crate) fn coloured_rgb(&self) -> ColouredRgb<'a, C> {
-        ColouredRgb { sums: self.sums(), ambient: self.reflectance.pure_ambient() }
+    /// The colours of a surface whose colour changes from pixel to pixel, for [`ColouredRgb`](super::constant_lights::ColouredRgb) on even rows and on
+    /// odd ones. Domain: [`Reflectance::lights`] is 1, three channels.
+    #[inline(never)]
+    pub(crate) fn coloured(&self) -> [Shares; 2] {
+        let ([[even, ..], [odd, ..]], ambient) = (&self.reflectance.reflectance().sums, self.reflectance.pure_ambient());
+        [even, odd].map(|sums| zip(*sums, ambient, |sum, ambient| sum.shares(ambient)))
     }
 
-    /// The colours of [`Self::coloured_rgb`] where red and blue have the same levels.
+    /// The colours of [`Self::coloured`] where red and blue have the same levels.
     #[inline(always)]
     pub(crate) fn neutral_rgb(&self) -> Option<NeutralRgb<C>> {
         let [[even, ..], _] = &self.reflectance.reflectance().sums;

@@ -228,15 +228,10 @@ pub trait Pixel: PixelFormat {
         None
     }
 
-    /// Fills rows by light that is computed at each pixel, see [`kernels::lit`].
+    /// The kernel that computes light at each pixel, see [`kernels::Lit::new`].
     #[doc(hidden)]
     #[inline(always)]
-    fn fill_lit<const LIGHTS: usize, const HIGHLIGHTS: usize>(
-        _: kernels::Rows<'_>,
-        _: (&mut kernels::Plane, kernels::Fields<'_>),
-        _: kernels::Lookup<'_>,
-        _: [&[kernels::Sums; LIGHTS]; 2],
-    ) -> Option<u32> {
+    fn lit<'a>(_: kernels::Colours<'a>, _highlights: usize, _: kernels::Lookup<'a>) -> Option<kernels::Lit<'a>> {
         None
     }
 
@@ -392,13 +387,8 @@ macro_rules! rgb565 {
             }
 
             #[inline(always)]
-            fn fill_lit<const LIGHTS: usize, const HIGHLIGHTS: usize>(
-                rows: kernels::Rows<'_>,
-                (depth, fields): (&mut kernels::Plane, kernels::Fields<'_>),
-                lookup: kernels::Lookup<'_>,
-                sums: [&[kernels::Sums; LIGHTS]; 2],
-            ) -> Option<u32> {
-                kernels::lit::<{ $order as u8 }, LIGHTS, HIGHLIGHTS>(rows, depth, fields, lookup, sums)
+            fn lit<'a>(colours: kernels::Colours<'a>, highlights: usize, lookup: kernels::Lookup<'a>) -> Option<kernels::Lit<'a>> {
+                kernels::Lit::new::<{ $order as u8 }>(colours, highlights, lookup)
             }
 
             #[inline(always)]
@@ -610,13 +600,8 @@ impl Pixel for Rgb565Be {
     }
 
     #[inline(always)]
-    fn fill_lit<const LIGHTS: usize, const HIGHLIGHTS: usize>(
-        rows: kernels::Rows<'_>,
-        (depth, fields): (&mut kernels::Plane, kernels::Fields<'_>),
-        lookup: kernels::Lookup<'_>,
-        sums: [&[kernels::Sums; LIGHTS]; 2],
-    ) -> Option<u32> {
-        kernels::lit::<{ kernels::Format::Swapped as u8 }, LIGHTS, HIGHLIGHTS>(rows, depth, fields, lookup, sums)
+    fn lit<'a>(colours: kernels::Colours<'a>, highlights: usize, lookup: kernels::Lookup<'a>) -> Option<kernels::Lit<'a>> {
+        kernels::Lit::new::<{ kernels::Format::Swapped as u8 }>(colours, highlights, lookup)
     }
 
     #[inline(always)]

@@ -38,7 +38,13 @@ pub trait PixelShader<V>: ByRows {
     /// Whether the kernel also fills rows without a depth test.
     const ALONE: bool = false;
 
-    /// Fills rows by the kernel. There is no plane of `depth` without a depth test. Returns the number of pixels between the sides.
+    /// The kernel, if one of the fields is quadratic.
+    #[inline(always)]
+    fn lit(&self) -> Option<kernels::Lit<'_>> {
+        None
+    }
+
+    /// Fills rows by the kernel for linear fields. There is no plane of `depth` without a depth test. Returns the number of pixels between the sides.
     #[inline(always)]
     fn fill<P: Patch>(&self, _rows: kernels::Rows<'_>, _depth: &mut [Plane], _patch: &mut P) -> Option<u32> {
         None

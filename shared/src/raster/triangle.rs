@@ -80,9 +80,6 @@ const _: () = {
     assert!(MAX_STEPPED_HEIGHT >> SUBPIXEL < kernels::MAX_HEIGHT as i32);
 };
 
-/// Fills a part of the rows of a triangle, see [`ScreenTriangle::fill_parts`].
-type FillPart<'f, C> = dyn FnMut([i32; 2], &mut LeftRight, &mut Band<'_, C>, bool) -> u32 + 'f;
-
 /// Whether a kernel walks the fields that a patch has.
 const fn is_same(kernel: Option<[usize; 2]>, patch: Option<[usize; 2]>) -> bool {
     matches!((kernel, patch), (Some([planes, quadratics]), Some([p, q])) if planes == p && quadratics == q)
@@ -264,11 +261,8 @@ impl<'f> ScreenTriangle<'f> {
             row = stop;
             stop = self.next(row, &mut rows.sides);
         }
-        let filled = rows.filled;
-        if P::WORDS <= ActiveTriangle::WORDS && self.rows.key != 0 && sides.goes_on() {
-            let Rows { sides: pair, depth, patch, .. } = rows;
-            save_active((self.rows.key, sides.state(pair, T::ID)), &depth, &patch, &mut band.active);
-        }
+        let Rows { sides: pair, depth, patch, filled, .. } = rows;
+        self.save(pair, &depth, &patch, T::ID, band);
         filled
     }
 
@@ -332,7 +326,16 @@ impl<'f> ScreenTriangle<'f> {
             patch.jump(row.wrapping_sub(gradients.row()));
         }
         shader.start_at(row);
-        self.fill_and_save(&mut depth, &mut patch, shader, band)
+        if !const { matches!(T::KERNEL, Some([_, 1])) } {
+            return self.fill_and_save(&mut depth, &mut patch, shader, band);
+        }
+        let mut fields = kernels::Fields::default();
+        patch.lend(&mut fields);
+        let (Some(lit), Some(plane)) = (shader.lit(), depth.planes().first_mut()) else { return 0 };
+        let mut pair = self.rows.sides.pair;
+        let filled = self.fill_lit(&mut pair, plane, &mut fields, &lit, band);
+        self.save(pair, &depth, &patch, T::ID, band);
+        filled
     }
 
     /// Fills rows by a kernel, and saves the triangle if it goes on.
@@ -344,47 +347,71 @@ impl<'f> ScreenTriangle<'f> {
         shader: T,
         band: &mut Band<'_, T::Pixel>,
     ) -> u32 {
-        let RowRange { sides, key, .. } = &self.rows;
-        let mut pair = sides.pair;
-        let filled = self.fill_by_kernel(&mut pair, depth, patch, shader, band);
-        if *key != 0 && sides.goes_on() {
-            save_active((*key, sides.state(pair, T::ID)), depth, patch, &mut band.active);
-        }
+        let mut pair = self.rows.sides.pair;
+        let filled = self.fill_by_kernel(&mut pair, band, |rows, is_odd| {
+            let mut shader = shader;
+            if is_odd {
+                shader.step_row();
+            }
+            shader.fill(rows, depth.planes(), patch).unwrap_or(0)
+        });
+        self.save(pair, depth, patch, T::ID, band);
         filled
     }
 
-    /// Fills the rows of a triangle by a kernel, and steps everything to the row behind them.
-    #[inline(always)]
-    fn fill_by_kernel<D: Patch, P: Patch, T: PixelShader<<P::Walker as Walker>::Value>>(
+    /// Fills rows by a kernel that computes light at each pixel. All methods and numbers of lights share this code.
+    #[inline(never)]
+    fn fill_lit<C: Pixel>(
         &self,
         pair: &mut LeftRight,
-        depth: &mut D,
-        patch: &mut P,
-        shader: T,
-        band: &mut Band<'_, T::Pixel>,
+        depth: &mut kernels::Plane,
+        fields: &mut kernels::Fields<'_>,
+        lit: &kernels::Lit<'_>,
+        band: &mut Band<'_, C>,
     ) -> u32 {
-        let sides = &self.rows.sides;
-        match sides.below() {
-            Some(turn) => fill_part([sides.row, sides.stop], pair, turn, (depth, patch), &shader, band),
-            None => self.fill_parts(pair, band, &mut |rows, pair, band, is_odd| {
-                let mut shader = shader;
-                if is_odd {
-                    shader.step_row();
-                }
-                fill_part(rows, pair, kernels::Turn::default(), (depth, patch), &shader, band)
-            }),
+        self.fill_by_kernel(pair, band, |rows, is_odd| if is_odd { lit.from_second_row() } else { *lit }.fill(rows, depth, fields))
+    }
+
+    /// Saves the triangle if it goes on in the next band.
+    #[inline(always)]
+    fn save<D: Patch, P: Patch, C>(&self, pair: LeftRight, depth: &D, patch: &P, shader: u8, band: &mut Band<'_, C>) {
+        let RowRange { sides, key, .. } = &self.rows;
+        if P::WORDS <= ActiveTriangle::WORDS && *key != 0 && sides.goes_on() {
+            save_active((*key, sides.state(pair, shader)), depth, patch, &mut band.active);
         }
     }
 
-    /// [`Self::fill_by_kernel`] if sides are computed again for some rows. `fill` gets a part of the rows. Its last argument is true if an odd number of rows
-    /// lies above this part.
+    /// Fills the rows of a triangle by a kernel, and steps the sides to the row behind them. `fill` gets the rows or a part of them. Its last argument is
+    /// true if an odd number of rows lies above this part.
+    #[inline(always)]
+    fn fill_by_kernel<C: Pixel>(
+        &self,
+        pair: &mut LeftRight,
+        band: &mut Band<'_, C>,
+        mut fill: impl FnMut(kernels::Rows<'_>, bool) -> u32,
+    ) -> u32 {
+        let sides = &self.rows.sides;
+        match sides.below() {
+            Some(turn) => part([sides.row, sides.stop], pair, turn, band).map_or(0, |rows| fill(rows, false)),
+            None => self.fill_parts(pair, band, &mut fill),
+        }
+    }
+
+    /// [`Self::fill_by_kernel`] if sides are computed again for some rows.
     #[cold]
     #[inline(never)]
-    fn fill_parts<C: Pixel>(&self, pair: &mut LeftRight, band: &mut Band<'_, C>, fill: &mut FillPart<'_, C>) -> u32 {
+    fn fill_parts<C: Pixel>(
+        &self,
+        pair: &mut LeftRight,
+        band: &mut Band<'_, C>,
+        fill: &mut dyn FnMut(kernels::Rows<'_>, bool) -> u32,
+    ) -> u32 {
         let sides = &self.rows.sides;
         let (mut row, mut stop, mut filled) = (sides.row, sides.stop, 0u32);
         loop {
-            filled = filled.wrapping_add(fill([row, stop], pair, band, row.wrapping_sub(sides.row) & 1 != 0));
+            if let Some(rows) = part([row, stop], pair, kernels::Turn::default(), band) {
+                filled = filled.wrapping_add(fill(rows, row.wrapping_sub(sides.row) & 1 != 0));
+            }
             if stop >= sides.end {
                 return filled;
             }
@@ -440,23 +467,20 @@ pub fn turn<A: Copy>([a, b, c]: [A; 3], by: usize) -> [A; 3] {
     }
 }
 
-/// Fills the rows from `row` to `stop`, and those below the turn, by a kernel.
+/// The rows from `row` to `stop`, and those below the turn, for a kernel; `None` if there are no kernels for the pixel format.
 ///
 /// They are within its limits. An edge that is stepped from end to end has at most [`MAX_STEPPED_HEIGHT`]. Of others a part has at most as many rows as
 /// its longer edge, and as [`crate::setup::edge::Edge::exact_rows`]: of a height of h rows min(h, 8192 / h), at most 90.
 #[inline(always)]
-fn fill_part<D: Patch, P: Patch, T: PixelShader<<P::Walker as Walker>::Value>>(
+fn part<'a, C: Pixel>(
     [row, stop]: [i32; 2],
-    pair: &mut LeftRight,
+    pair: &'a mut LeftRight,
     turn: kernels::Turn,
-    (depth, patch): (&mut D, &mut P),
-    shader: &T,
-    band: &mut Band<'_, T::Pixel>,
-) -> u32 {
-    let Some(pixels) = T::Pixel::halfwords(band.pixels) else { return 0 };
+    band: &'a mut Band<'_, C>,
+) -> Option<kernels::Rows<'a>> {
     let (first, height) = (row.wrapping_sub(band.top) as u32, stop.wrapping_sub(row) as u32);
-    let rows = kernels::Rows { pixels, depth: band.depth, width: band.width, first, sides: transmute_mut!(pair), height, turn };
-    shader.fill(rows, depth.planes(), patch).unwrap_or(0)
+    let pixels = C::halfwords(band.pixels)?;
+    Some(kernels::Rows { pixels, depth: band.depth, width: band.width, first, sides: transmute_mut!(pair), height, turn })
 }
 
 /// Saves a triangle for the next band, stepped to its first row there.

@@ -2,7 +2,7 @@
 
 use crate::{GUARD, PIXELS, Random, line, plane, say};
 use cortex_m_semihosting::debug;
-use microphong_kernels::{Fields, Format, Highlights, Lookup, MAX_HEIGHT, Plane, Quadric, Roots, Rows, Sides, Sums, Turn, lit, lit_ramp};
+use microphong_kernels::{Colours, Fields, Format, Highlights, Lit, Lookup, MAX_HEIGHT, Plane, Quadric, Roots, Rows, Shares, Sides, Sums, Turn};
 
 /// Cases for each kernel.
 const CASES: u32 = 10_000;
@@ -42,20 +42,50 @@ static RAMPS: [[u16; 512]; 2] = {
     tables
 };
 
-/// A kernel: the format of channels or none for a table of colours, the lights, and highlights.
-type Kernel = (Option<Format>, usize, usize);
+/// What colours are made of, see [`Colours`].
+#[derive(Clone, Copy, Debug, PartialEq)]
+enum Light {
+    Table,
+    Lights(usize),
+    Summed,
+    PaintedLight,
+    PaintedSum,
+}
 
-const KERNELS: [Kernel; 9] = [
-    (Some(Format::Rgb), 1, 0),
-    (Some(Format::Rgb), 1, 1),
-    (Some(Format::Rgb), 2, 0),
-    (Some(Format::Rgb), 2, 1),
-    (Some(Format::Rgb), 2, 2),
-    (Some(Format::Bgr), 2, 2),
-    (Some(Format::Swapped), 1, 1),
-    (None, 1, 0),
-    (None, 1, 1),
+/// A kernel: the format of channels, the light, and the number of highlights.
+type Kernel = (Format, Light, usize);
+
+const KERNELS: [Kernel; 17] = [
+    (Format::Rgb, Light::Table, 0),
+    (Format::Rgb, Light::Table, 1),
+    (Format::Rgb, Light::Lights(1), 0),
+    (Format::Rgb, Light::Lights(1), 1),
+    (Format::Swapped, Light::Lights(1), 1),
+    (Format::Rgb, Light::Lights(2), 0),
+    (Format::Rgb, Light::Lights(2), 1),
+    (Format::Rgb, Light::Lights(2), 2),
+    (Format::Bgr, Light::Lights(2), 2),
+    (Format::Rgb, Light::Summed, 0),
+    (Format::Rgb, Light::Summed, 1),
+    (Format::Bgr, Light::Summed, 2),
+    (Format::Rgb, Light::PaintedLight, 0),
+    (Format::Swapped, Light::PaintedLight, 1),
+    (Format::Rgb, Light::PaintedSum, 0),
+    (Format::Swapped, Light::PaintedSum, 1),
+    (Format::Rgb, Light::PaintedSum, 2),
 ];
+
+/// The number of numerators.
+fn numerators((_, light, highlights): Kernel) -> usize {
+    highlights
+        + match light {
+            Light::Table => 1,
+            Light::Lights(lights) => lights,
+            Light::Summed => 3,
+            Light::PaintedLight => 4,
+            Light::PaintedSum => 6,
+        }
+}
 
 /// What a kernel changes.
 #[derive(Clone, PartialEq)]
@@ -64,7 +94,7 @@ struct State {
     depth: [u16; PIXELS + 2 * GUARD],
     sides: Sides,
     plane: Plane,
-    planes: [Plane; 4],
+    planes: [Plane; 8],
     square: Quadric,
 }
 
@@ -78,62 +108,87 @@ struct Case {
     turn: Turn,
     top: i32,
     sums: [[Sums; 2]; 2],
+    shares: [Shares; 2],
 }
 
 impl Case {
     fn by_kernel(&self, state: &mut State) -> Option<u32> {
-        let &Self { width, first, height, turn, top, .. } = self;
+        let &Self { width, first, height, turn, top, kernel: (format, light, highlights), .. } = self;
         let State { pixels, depth, sides, plane, planes, square } = state;
-        let fields = Fields { planes: planes.each_mut().map(Some), square: Some(square) };
+        let mut fields = Fields::default();
+        planes.iter_mut().take(numerators(self.kernel)).for_each(|plane| fields.add_numerator(plane));
+        fields.set_square(square);
         let (pixels, depth) = (&mut pixels[GUARD..][..PIXELS], &mut depth[GUARD..][..PIXELS]);
         let rows = Rows { pixels, depth, width, first, height, sides, turn };
         let lookup = Lookup { roots: &ROOTS, highlights: Some(&HIGHLIGHTS), top };
-        let [even, odd] = &self.sums;
-        let (one, both) = ([even, odd].map(|sums| sums.first_chunk().unwrap()), [even, odd]);
-        const RGB: u8 = Format::Rgb as u8;
-        match self.kernel {
-            (None, _, 0) => lit_ramp::<0>(rows, plane, fields, lookup, RAMPS.each_ref()),
-            (None, ..) => lit_ramp::<1>(rows, plane, fields, lookup, RAMPS.each_ref()),
-            (Some(Format::Bgr), ..) => lit::<{ Format::Bgr as u8 }, 2, 2>(rows, plane, fields, lookup, both),
-            (Some(Format::Swapped), ..) => lit::<{ Format::Swapped as u8 }, 1, 1>(rows, plane, fields, lookup, one),
-            (_, 1, 0) => lit::<RGB, 1, 0>(rows, plane, fields, lookup, one),
-            (_, 1, _) => lit::<RGB, 1, 1>(rows, plane, fields, lookup, one),
-            (_, _, 0) => lit::<RGB, 2, 0>(rows, plane, fields, lookup, both),
-            (_, _, 1) => lit::<RGB, 2, 1>(rows, plane, fields, lookup, both),
-            _ => lit::<RGB, 2, 2>(rows, plane, fields, lookup, both),
-        }
+        let colours = match light {
+            Light::Table => Colours::Table(RAMPS.each_ref()),
+            Light::Lights(1) => Colours::Light(self.sums.each_ref().map(|[first, _]| first)),
+            Light::Lights(_) => Colours::TwoLights(self.sums.each_ref()),
+            Light::Summed => Colours::Summed(self.shares.each_ref()),
+            Light::PaintedLight => Colours::PaintedLight(self.shares.each_ref()),
+            Light::PaintedSum => Colours::PaintedSum(self.shares.each_ref()),
+        };
+        let lit = match format {
+            Format::Rgb => Lit::new::<{ Format::Rgb as u8 }>(colours, highlights, lookup),
+            Format::Bgr => Lit::new::<{ Format::Bgr as u8 }>(colours, highlights, lookup),
+            Format::Swapped => Lit::new::<{ Format::Swapped as u8 }>(colours, highlights, lookup),
+        };
+        lit.map(|lit| lit.fill(rows, plane, &mut fields))
     }
 
     /// The pixel of these fields, on an even row of the kernel or on an odd one.
-    fn pixel(&self, planes: &[Plane; 4], square: &Quadric, column: i32, parity: usize) -> u16 {
-        let (format, lights, highlights) = self.kernel;
+    fn pixel(&self, planes: &[Plane; 8], square: &Quadric, column: i32, parity: usize) -> u16 {
+        let (format, light, highlights) = self.kernel;
         let square = square[3].wrapping_add(square[5].wrapping_mul(column)).wrapping_mul(column).wrapping_add(square[0]) as u32;
         let knot = ROOTS[(square >> 21) as usize];
         let half_reciprocal = knot.wrapping_sub((knot & 0x3FF).wrapping_mul(square >> 11 & 0x3FF)) as i32;
-        let mut planes = planes.iter();
-        let mut quotient = || {
-            let plane = planes.next().unwrap();
-            let value = plane[0].wrapping_add(plane[1].wrapping_mul(column));
-            ((i64::from(value) * i64::from(half_reciprocal)) >> 32) as i32
-        };
-        let mut light = |has_highlight: bool| {
-            let level = quotient();
-            let place = if has_highlight { self.top.wrapping_sub(quotient()) >> 8 } else { 4096 };
-            (level, if has_highlight { i32::from(HIGHLIGHTS[place.clamp(0, 4095) as usize]) } else { 0 })
-        };
-        let (level, highlight) = light(highlights > 0);
-        let Some(format) = format else {
-            let more = if highlights > 0 { (highlight as u32) << 12 } else { self.top as u32 };
-            return RAMPS[parity][((level.max(0) as u32).wrapping_add(more) >> 19 & 511) as usize];
-        };
-        let (second, second_highlight) = if lights > 1 { light(highlights > 1) } else { (0, 0) };
+        let mut values = planes.iter().map(|plane| plane[0].wrapping_add(plane[1].wrapping_mul(column)));
+        let mut value = || values.next().unwrap();
+        let over_length = |value: i32| ((i64::from(value) * i64::from(half_reciprocal)) >> 32) as i32;
+        let highlight = |value: i32| i32::from(HIGHLIGHTS[(self.top.wrapping_sub(over_length(value)) >> 8).clamp(0, 4095) as usize]);
         let cosine = |level: i32| (level >> 11).clamp(0, 0x7FFF);
-        let channel = |k: usize, bits: u32| {
-            let [[ambient, diffuse, specular], [_, diffuse2, specular2]] = self.sums[parity].map(|light| light[k]);
-            let level = ambient.wrapping_add(diffuse.wrapping_mul(cosine(level))).wrapping_add(specular.wrapping_mul(highlight));
-            let level = level.wrapping_add(diffuse2.wrapping_mul(cosine(second))).wrapping_add(specular2.wrapping_mul(second_highlight));
-            (level >> (30 - bits)).clamp(0, (1 << bits) - 1) as u16
-        };
+        let painted = |level: i32, share: i32| (level >> 15).wrapping_mul(share >> 14);
+        let mut channels = [0i32; 3];
+        match light {
+            Light::Table => {
+                let level = over_length(value()).max(0) as u32;
+                let more = if highlights > 0 { (highlight(value()) as u32) << 12 } else { self.top as u32 };
+                return RAMPS[parity][(level.wrapping_add(more) >> 19 & 511) as usize];
+            }
+            Light::Lights(lights) => {
+                for light in 0..lights {
+                    let level = cosine(over_length(value()));
+                    let highlight = if light < highlights { highlight(value()) } else { 0 };
+                    for (channel, [ambient, diffuse, specular]) in channels.iter_mut().zip(self.sums[parity][light]) {
+                        let light_level = diffuse.wrapping_mul(level).wrapping_add(specular.wrapping_mul(highlight));
+                        *channel = channel.wrapping_add(light_level).wrapping_add(if light == 0 { ambient } else { 0 });
+                    }
+                }
+            }
+            Light::PaintedLight => {
+                let level = cosine(over_length(value()));
+                let highlight = if highlights > 0 { highlight(value()) } else { 0 };
+                for (channel, [rounding, ambient, diffuse, specular]) in channels.iter_mut().zip(self.shares[parity]) {
+                    let lit = painted(ambient.wrapping_add(diffuse.wrapping_mul(level)), value());
+                    *channel = lit.wrapping_add(rounding).wrapping_add(specular.wrapping_mul(highlight));
+                }
+            }
+            Light::Summed | Light::PaintedSum => {
+                let sums = [over_length(value()), over_length(value()), over_length(value())];
+                for ((channel, sum), [rounding, ambient, ..]) in channels.iter_mut().zip(sums).zip(self.shares[parity]) {
+                    let level = ambient.wrapping_add(sum << 3);
+                    *channel = if light == Light::Summed { level } else { painted(level, value()).wrapping_add(rounding) };
+                }
+                for number in 0..highlights {
+                    let highlight = highlight(value());
+                    for (channel, shares) in channels.iter_mut().zip(self.shares[parity]) {
+                        *channel = channel.wrapping_add(shares[2 + number].wrapping_mul(highlight));
+                    }
+                }
+            }
+        }
+        let channel = |k: usize, bits: u32| (channels[k] >> (30 - bits)).clamp(0, (1 << bits) - 1) as u16;
         let [red, green, blue] = [channel(0, 5), channel(1, 6), channel(2, 5)];
         match format {
             Format::Rgb => red << 11 | green << 5 | blue,
@@ -144,7 +199,6 @@ impl Case {
 
     fn by_loop(&self, state: &mut State) -> u32 {
         let State { pixels, depth, sides, plane, planes, square } = state;
-        let (_, lights, highlights) = self.kernel;
         let mut count = 0;
         for row in 0..self.height + self.turn.height {
             if row == self.height {
@@ -166,7 +220,7 @@ impl Case {
             sides[0] = sides[0].wrapping_add(sides[1]);
             sides[2] = sides[2].wrapping_add(sides[3]);
             plane[0] = plane[0].wrapping_add(plane[2]);
-            planes.iter_mut().take(lights + highlights).for_each(|[value, _, down]| *value = value.wrapping_add(*down));
+            planes.iter_mut().take(numerators(self.kernel)).for_each(|[value, _, down]| *value = value.wrapping_add(*down));
             for (to, from) in [(0, 1), (1, 2), (3, 4)] {
                 square[to] = square[to].wrapping_add(square[from]);
             }
@@ -189,7 +243,9 @@ pub(crate) fn compare(random: &mut Random) -> (u32, u32) {
             let mut sum = || [(random.next() >> 3) as i32, random.next() as i32 >> 17, random.next() as i32 >> 17];
             let mut sums = || [sum(), sum(), sum()];
             let sums = [[sums(), sums()], [sums(), sums()]];
-            let case = Case { kernel, width, first, height, turn, top: random.next() as i32 >> 10, sums };
+            let mut shares = || [0; 3].map(|_: i32| [(random.next() >> 8) as i32, (random.next() >> 3) as i32, random.next() as i32 >> 17, random.next() as i32 >> 17]);
+            let shares = [shares(), shares()];
+            let case = Case { kernel, width, first, height, turn, top: random.next() as i32 >> 10, sums, shares };
             let [l, r] = [line(random, width), line(random, width)];
             // Quotients of small numerators often lie between the ends of tables.
             let shift = 5 * random.below(3);
@@ -216,14 +272,14 @@ pub(crate) fn compare(random: &mut Random) -> (u32, u32) {
             (cases, pixels) = (cases + 1, pixels + expected);
         }
         // Rows that do not fit change nothing.
-        let fits = Case { kernel, width: 20, first: 10, height: 10, turn: Turn::default(), top: 0, sums: [[[[1; 3]; 3]; 2]; 2] };
+        let fits = Case { kernel, width: 20, first: 10, height: 10, turn: Turn::default(), top: 0, sums: [[[[1; 3]; 3]; 2]; 2], shares: [[[1; 4]; 3]; 2] };
         for case in [Case { first: 21, ..fits.clone() }, Case { height: MAX_HEIGHT + 1, width: 0, ..fits.clone() }] {
             let before = State {
                 pixels: [0x5555; PIXELS + 2 * GUARD],
                 depth: [0; PIXELS + 2 * GUARD],
                 sides: [1 << 21, 1 << 20, 12 << 21, 1 << 20],
                 plane: [1 << 30, 0, 1],
-                planes: [[1 << 29; 3]; 4],
+                planes: [[1 << 29; 3]; 8],
                 square: [1 << 29; 6],
             };
             let mut state = before.clone();

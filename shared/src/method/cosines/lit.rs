@@ -4,7 +4,6 @@
 //! here: one light or two, and colours from a table or from sums.
 
 use crate::{
-    interpolate::Patch,
     lighting::constant_lights::{Coloured, KERNEL_BITS, Shades, SurfaceColour},
     pixel::{Pixel, by_rows::ByRows},
     raster::pixel_shader::PixelShader,
@@ -111,9 +110,7 @@ impl<V, T: Shades<L>, K: AtPixel<V>, L: FromValues<K::Common, K::Values>> PixelS
         };
 
     #[inline(always)]
-    fn fill<P: Patch>(&self, rows: kernels::Rows<'_>, depth: &mut [kernels::Plane], patch: &mut P) -> Option<u32> {
-        let mut fields = kernels::Fields::default();
-        patch.lend(&mut fields, 0);
-        self.colours.fill(rows, (depth.first_mut()?, fields), self.at.lookup()?)
+    fn lit(&self) -> Option<kernels::Lit<'_>> {
+        self.colours.lit(self.at.lookup()?)
     }
 }

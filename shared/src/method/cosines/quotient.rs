@@ -15,7 +15,7 @@ use crate::{
     lighting::{
         albedo::{Albedo, SHARE},
         constant_lights::{
-            COLOUR, Coloured, DiffuseOnly, KERNEL_BITS, LitColours, MayHaveHighlight, OneLightRamp, OneLightRgb, Shades, SurfaceColour,
+            COLOUR, Coloured, ColouredRgb, DiffuseOnly, KERNEL_BITS, LitColours, MayHaveHighlight, OneLightRamp, OneLightRgb, Shades, SurfaceColour,
             WithHighlight, node,
         },
         material_tables::MaterialTables,
@@ -61,7 +61,7 @@ pub(super) struct Quotient<'a>(pub(super) &'a HalfRsqrt);
 
 /// Values at the pixel are numerators with highlights and a squared length.
 #[derive(Clone, Copy)]
-struct QuotientWithHighlight<'a>(QuotientLookup<'a>, &'a HalfRsqrt);
+pub(super) struct QuotientWithHighlight<'a>(pub(super) QuotientLookup<'a>, pub(super) &'a HalfRsqrt);
 
 impl<V> AtPixel<(V, [u32; 1])> for Quotient<'_> {
     type Common = HalfReciprocal;
@@ -235,9 +235,11 @@ fn draw_painted<C: Pixel, P: Patch<Walker: Walker<Value: SurfaceColour>>>(
     tables: MaterialTables<'_, C>,
     band: &mut Band<'_, C>,
 ) -> Option<u32> {
-    match tables.neutral_rgb() {
+    // Kernels take the same time in all colours.
+    let neutral = if const { has_kernels::<C>() && P::FIELDS.is_some() } { None } else { tables.neutral_rgb() };
+    match neutral {
         Some(colours) => draw_painted_in(setup, cosines, lengths, colour, colours, tables, band),
-        None => draw_painted_in(setup, cosines, lengths, colour, tables.coloured_rgb(), tables, band),
+        None => draw_painted_in(setup, cosines, lengths, colour, ColouredRgb::of(&tables.coloured()), tables, band),
     }
 }
 
@@ -266,6 +268,11 @@ where
         (((diffuse, highlight), colour()), square)
     };
     Some(setup.fill(patch, LitShader::of::<Coloured<WithHighlight>>(colours, QuotientWithHighlight(lookup, HalfRsqrt::get())), band))
+}
+
+/// Whether there are kernels that compute light at each pixel of this format.
+pub(super) const fn has_kernels<C: Pixel>() -> bool {
+    kernels::LIT_AVAILABLE && C::HAS_KERNELS
 }
 
 /// Draws as [`draw_in`] does, on a surface with a texture.

@@ -21,7 +21,7 @@ use crate::{
     },
     lighting::{
         albedo::Albedo,
-        constant_lights::{Coloured, DiffuseOnly, LitColours, OneLightRamp, OneLightRgb, Shades, SurfaceColour, WithHighlight, node},
+        constant_lights::{Coloured, ColouredRgb, DiffuseOnly, LitColours, OneLightRamp, OneLightRgb, Shades, SurfaceColour, WithHighlight, node},
         lights::Source,
         material_tables::MaterialTables,
         reflectance::{Highlight, Reflectance, Reflection},
@@ -249,7 +249,7 @@ fn draw_painted<const ROOT: IsRoot, C: Pixel, P: Patch<Walker: Walker<Value: Sur
 ) -> Option<u32> {
     match tables.neutral_rgb() {
         Some(colours) => draw_painted_in::<ROOT, C, _, P>(setup, corners, colours, colour, shading, tables, band),
-        None => draw_painted_in::<ROOT, C, _, P>(setup, corners, tables.coloured_rgb(), colour, shading, tables, band),
+        None => draw_painted_in::<ROOT, C, _, P>(setup, corners, ColouredRgb::of(&tables.coloured()), colour, shading, tables, band),
     }
 }
 

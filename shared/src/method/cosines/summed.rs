@@ -16,7 +16,7 @@ use crate::{
     },
     lighting::{
         albedo::{Albedo, SHARE},
-        constant_lights::{DiffuseOnly, LitColours, SUMMED, Summed, SummedColours, SurfaceColour, cosine},
+        constant_lights::{Coloured, DiffuseOnly, LitColours, SUMMED, Summed, SummedColours, SummedRgb, SummedWithHighlights, SurfaceColour, cosine},
         lights::Viewer,
         material_tables::MaterialTables,
         summed::{Sides, at_vertex, part},
@@ -35,7 +35,7 @@ use crate::{
                 self,
                 term::{NearTerm, NearTerms},
             },
-            quotient::{HalfReciprocal, LEVEL, NODE, PIXEL, Quotient, RANGE, colour, is_plane, numerator, plane},
+            quotient::{HalfReciprocal, LEVEL, NODE, PIXEL, Quotient, QuotientWithHighlight, RANGE, colour, has_kernels, is_plane, numerator, plane},
             scale::{Lengths, STEEPEST},
         },
         largest,
@@ -146,6 +146,12 @@ impl SummedLights {
         }
     }
 
+    /// Whether kernels can draw them: no light ends on the triangle, and at most two have a highlight there.
+    #[inline(always)]
+    fn suit_kernels(&self) -> bool {
+        self.ending.is_empty() && self.highlights.len() <= 2
+    }
+
     /// Puts these lights on a surface of one colour.
     #[inline(never)]
     fn paint(&mut self, near: Option<&mut NearTerms>, albedo: Albedo) {
@@ -224,6 +230,10 @@ where
     let by_cosine = tables.reflectance.table()?.by_cosine();
     let shader =
         OneByOne::<C, NEAR> { colours, lookup, by_cosine, lengths: HalfRsqrt::get(), lights, near: &near, row: setup.gradients.row() };
+    if const { !NEAR && !C::GRAY && has_kernels::<C>() } && !has_texture && lights.suit_kernels() && colours.is_fine() {
+        let of = WithKernels { lights, colours, lookup, colour: if one_colour.is_none() { setup.albedos() } else { None } };
+        return of.draw(setup, lengths, band);
+    }
     if !NEAR && has_texture {
         let texels = setup.texels()?;
         return Some(setup.fill(|| (Column, (texels, ByColumn(patch()))), shader, band));
@@ -235,6 +245,53 @@ where
         return Some(setup.fill(patch, LitShader::of::<Summed>(colours, Quotient(HalfRsqrt::get())), band));
     }
     Some(setup.fill(|| (Column, ByColumn(patch())), shader, band))
+}
+
+/// What is drawn by kernels that compute light at each pixel. Domain: [`SummedLights::suit_kernels`].
+struct WithKernels<'a, C: Pixel> {
+    lights: &'a SummedLights,
+    colours: SummedColours<'a, C>,
+    lookup: QuotientLookup<'a>,
+    /// The colours of the corners, unless they are the same.
+    colour: Option<&'a [Albedo; 3]>,
+}
+
+impl<C: Pixel> WithKernels<'_, C> {
+    #[inline(never)]
+    fn draw(&self, setup: &TriangleSetup<'_>, lengths: &Lengths, band: &mut Band<'_, C>) -> Option<u32> {
+        let &Self { lights, colours, lookup, colour: albedos } = self;
+        let (mut factors, mut halves) = ([[0; 3]; 2], [Plane::default(); 2]);
+        for ((factors, half), term) in factors.iter_mut().zip(&mut halves).zip(&lights.highlights) {
+            (*factors, *half) = (term.factors, term.numerator.get());
+        }
+        let (shares, halves) = (colours.shares(albedos.map(|_| &lights.ambient), factors), Plane::side_by_side(halves));
+        let (colours, at) = (SummedRgb::of(&shares, lights.highlights.len()), QuotientWithHighlight(lookup, HalfRsqrt::get()));
+        let diffuse = || sums(setup, lengths, &lights.corners, &|channels| channels);
+        if VERTEX_COLOURS && let Some(albedos) = albedos {
+            let patch = || (((diffuse(), colour(setup, albedos)), halves), lengths.square(setup));
+            let shader = LitShader::of::<Coloured<SummedWithHighlights>>(colours, at);
+            return is_plane(setup, albedos).then(|| setup.fill(patch, shader, band));
+        }
+        Some(setup.fill(|| ((diffuse(), halves), lengths.square(setup)), LitShader::of::<SummedWithHighlights>(colours, at), band))
+    }
+}
+
+/// What all lights have in common at a pixel.
+type Common<'a> = (QuotientLookup<'a>, HalfReciprocal);
+
+impl FromValues<Common<'_>, ([u32; 3], [u32; 2])> for SummedWithHighlights {
+    #[inline(always)]
+    fn from_values((lookup, half_reciprocal): &Common<'_>, full: u16, (sums, [one, two]): ([u32; 3], [u32; 2])) -> Self {
+        let highlight = |half: u32| lookup.at(upper(half as i32, half_reciprocal.0));
+        Self(Summed::from_values(half_reciprocal, full, sums), [highlight(one), highlight(two)])
+    }
+}
+
+impl FromValues<Common<'_>, (([u32; 3], [u32; 3]), [u32; 2])> for Coloured<SummedWithHighlights> {
+    #[inline(always)]
+    fn from_values(common: &Common<'_>, full: u16, ((sums, colour), halves): (([u32; 3], [u32; 3]), [u32; 2])) -> Self {
+        Self(SummedWithHighlights::from_values(common, full, (sums, halves)), colour)
+    }
 }
 
 /// The sums at the corners where a light or the viewer is near, so that vertices hold levels, or nothing.
