@@ -3,7 +3,7 @@
 use embedded_graphics::geometry::Size;
 use microphong::{
     method::{
-        auto::costs::{COSTS, Cost},
+        auto::costs::{COSTS, Cost, SHARES},
         cosines::sqrt6::Sqrt6,
     },
     stream::record::Triangle,
@@ -231,26 +231,36 @@ fn bench_tells_choices() {
     assert_eq!(Some(sum(&auto, "pixels")), auto["pixels"].as_u64(), "{auto}");
 }
 
-/// The table by which methods are chosen still is what they cost: the means of two scenes, one of large and one of small triangles.
+/// The table by which methods are chosen still is what they cost: the means of three processors, and of two scenes, one of large and one of small triangles.
 #[test]
 fn the_table_of_costs_is_true() {
-    let bench = Bench::new(&[Processor::CortexM3]).expect("a firmware");
-    let wanted = [Shader::SIX_POINT, Shader::PHONG].map(|shader| (Processor::CortexM3, shader));
+    const PROCESSORS: [Processor; 3] = [Processor::CortexM3, Processor::RiscV, Processor::CortexM0Plus];
+    const METHODS: [Shader; 2] = [Shader::SIX_POINT, Shader::PHONG];
+    let bench = Bench::new(&PROCESSORS).expect("programs of three boards");
+    let wanted = PROCESSORS.map(|processor| METHODS.map(|shader| (processor, shader)));
+    // Instructions for each triangle, row and pixel, of each processor and method.
     let cost = |scene: &&str| {
         let scene = scene::load(scene).expect("a built-in scene");
-        let measured = bench.count(&scene, &wanted, &|| ()).expect("measurements");
-        [0, 1].map(|k: usize| {
-            let (of, stages) = (&measured[k], measured[k].by_stage);
+        let measured = bench.count(&scene, wanted.as_flattened(), &|| ()).expect("measurements");
+        let costs = measured.iter().map(|of| {
+            let stages = of.by_stage;
             [(stages.setup, of.triangles), (stages.span, of.spans), (stages.pixel, of.pixels)].map(|(sum, of)| sum as f64 / of as f64)
-        })
+        });
+        costs.collect::<Vec<_>>()
     };
     let styles = [["peer-sphere", "teapot"], ["peer-sphere-plastic", "torus"], ["peer-sphere-lights", "bunny"]];
-    for (scenes, table) in styles.iter().zip(COSTS) {
-        let [large, small] = [0, 1].map(|k: usize| cost(&scenes[k]));
+    let found = styles.map(|scenes| scenes.each_ref().map(cost));
+    for ((scenes, found), table) in styles.iter().zip(found).zip(COSTS) {
         for (k, Cost { triangle, row, pixel }) in [table.quadratic, table.phong].into_iter().enumerate() {
-            let means = [0, 1, 2].map(|part| f64::midpoint(large[k][part], small[k][part]));
+            let means = [0, 1, 2].map(|part| {
+                let shares = SHARES.iter().enumerate().map(|(processor, share)| {
+                    let of = |costs: &[[f64; 3]]| costs[METHODS.len() * processor + k][part];
+                    share * f64::midpoint(of(&found[0]), of(&found[1]))
+                });
+                shares.sum::<f64>() / SHARES.iter().sum::<f64>()
+            });
             let told = [triangle, row, pixel].map(f64::from);
-            println!("{scenes:?}, {}: {means:.1?}, the table has {told:?}", wanted[k].1.name());
+            println!("{scenes:?}, {}: {means:.1?}, the table has {told:?}", METHODS[k].name());
             assert!((0..3).all(|part| (means[part] - told[part]).abs() <= 0.5 + 0.05 * told[part]));
         }
     }

@@ -373,10 +373,10 @@ impl<const CH: usize> Drawn<CH> for Light<3, CH> {
             LinearWay::Quadratic(shares) => return self.six(shares).draw(setup, texture, pixels, band),
             LinearWay::InSpace => return self.draw_in_space(setup, texture, pixels, band),
         }
-        let fit = |levels| ByColumn(Nodes::<3, CH, RANGE>::new(levels, CHANNEL - LEVEL).fit(setup.gradients));
+        let fit = |levels| Nodes::<3, CH, RANGE>::new(levels, CHANNEL - LEVEL).fit(setup.gradients);
         let way = setup.way_of_places(texture);
         if matches!(way, LinearWay::Plane) {
-            let place = || Placed::<_, true> { place: ByColumn(setup.place_by_plane(texture)), sampler: texture.sampler };
+            let place = || Placed::<_, true> { place: setup.place_by_plane(texture), sampler: texture.sampler };
             return Some(self.fill(setup, place, fit, pixels, band));
         }
         if let Some(quadratic) = by_quadratic(setup, texture, way) {

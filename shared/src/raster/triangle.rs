@@ -261,8 +261,11 @@ impl<'f> ScreenTriangle<'f> {
             row = stop;
             stop = self.next(row, &mut rows.sides);
         }
-        let Rows { sides: pair, depth, patch, filled, .. } = rows;
-        self.save(pair, &depth, &patch, T::ID, band);
+        let filled = rows.filled;
+        if self.is_saved::<P>() {
+            let Rows { sides: pair, depth, patch, .. } = rows;
+            self.save(pair, &depth, &patch, T::ID, band);
+        }
         filled
     }
 
@@ -334,7 +337,9 @@ impl<'f> ScreenTriangle<'f> {
         let (Some(lit), Some(plane)) = (shader.lit(), depth.planes().first_mut()) else { return 0 };
         let mut pair = self.rows.sides.pair;
         let filled = self.fill_lit(&mut pair, plane, &mut fields, &lit, band);
-        self.save(pair, &depth, &patch, T::ID, band);
+        if self.is_saved::<P>() {
+            self.save(pair, &depth, &patch, T::ID, band);
+        }
         filled
     }
 
@@ -347,15 +352,25 @@ impl<'f> ScreenTriangle<'f> {
         shader: T,
         band: &mut Band<'_, T::Pixel>,
     ) -> u32 {
-        let mut pair = self.rows.sides.pair;
-        let filled = self.fill_by_kernel(&mut pair, band, |rows, is_odd| {
-            let mut shader = shader;
-            if is_odd {
-                shader.step_row();
+        let sides = &self.rows.sides;
+        let mut pair = sides.pair;
+        // The first case is the usual one: without a closure nothing is kept in memory for it.
+        let filled = match sides.below() {
+            Some(turn) => {
+                let rows = part([sides.row, sides.stop], &mut pair, turn, band);
+                rows.and_then(|rows| shader.fill(rows, depth.planes(), patch)).unwrap_or(0)
             }
-            shader.fill(rows, depth.planes(), patch).unwrap_or(0)
-        });
-        self.save(pair, depth, patch, T::ID, band);
+            None => self.fill_parts(&mut pair, band, &mut |rows, is_odd| {
+                let mut shader = shader;
+                if is_odd {
+                    shader.step_row();
+                }
+                shader.fill(rows, depth.planes(), patch).unwrap_or(0)
+            }),
+        };
+        if self.is_saved::<P>() {
+            self.save(pair, depth, patch, T::ID, band);
+        }
         filled
     }
 
@@ -369,35 +384,29 @@ impl<'f> ScreenTriangle<'f> {
         lit: &kernels::Lit<'_>,
         band: &mut Band<'_, C>,
     ) -> u32 {
-        self.fill_by_kernel(pair, band, |rows, is_odd| if is_odd { lit.from_second_row() } else { *lit }.fill(rows, depth, fields))
-    }
-
-    /// Saves the triangle if it goes on in the next band.
-    #[inline(always)]
-    fn save<D: Patch, P: Patch, C>(&self, pair: LeftRight, depth: &D, patch: &P, shader: u8, band: &mut Band<'_, C>) {
-        let RowRange { sides, key, .. } = &self.rows;
-        if P::WORDS <= ActiveTriangle::WORDS && *key != 0 && sides.goes_on() {
-            save_active((*key, sides.state(pair, shader)), depth, patch, &mut band.active);
-        }
-    }
-
-    /// Fills the rows of a triangle by a kernel, and steps the sides to the row behind them. `fill` gets the rows or a part of them. Its last argument is
-    /// true if an odd number of rows lies above this part.
-    #[inline(always)]
-    fn fill_by_kernel<C: Pixel>(
-        &self,
-        pair: &mut LeftRight,
-        band: &mut Band<'_, C>,
-        mut fill: impl FnMut(kernels::Rows<'_>, bool) -> u32,
-    ) -> u32 {
         let sides = &self.rows.sides;
         match sides.below() {
-            Some(turn) => part([sides.row, sides.stop], pair, turn, band).map_or(0, |rows| fill(rows, false)),
-            None => self.fill_parts(pair, band, &mut fill),
+            Some(turn) => part([sides.row, sides.stop], pair, turn, band).map_or(0, |rows| lit.fill(rows, depth, fields)),
+            None => self.fill_parts(pair, band, &mut |rows, is_odd| {
+                if is_odd { lit.from_second_row() } else { *lit }.fill(rows, depth, fields)
+            }),
         }
     }
 
-    /// [`Self::fill_by_kernel`] if sides are computed again for some rows.
+    /// Whether the triangle goes on in the next band, and there is room for its polynomial.
+    #[inline(always)]
+    fn is_saved<P: Patch>(&self) -> bool {
+        P::WORDS <= ActiveTriangle::WORDS && self.rows.key != 0 && self.rows.sides.goes_on()
+    }
+
+    /// Saves the triangle for the next band.
+    #[inline(always)]
+    fn save<D: Patch, P: Patch, C>(&self, pair: LeftRight, depth: &D, patch: &P, shader: u8, band: &mut Band<'_, C>) {
+        save_active((self.rows.key, self.rows.sides.state(pair, shader)), depth, patch, &mut band.active);
+    }
+
+    /// Fills the rows of a triangle by a kernel part by part, because sides are computed again for some rows. The last argument of `fill` is true if an
+    /// odd number of rows lies above the part.
     #[cold]
     #[inline(never)]
     fn fill_parts<C: Pixel>(

@@ -266,7 +266,7 @@ impl<C: Pixel> WithKernels<'_, C> {
         }
         let (shares, halves) = (colours.shares(albedos.map(|_| &lights.ambient), factors), Plane::side_by_side(halves));
         let (colours, at) = (SummedRgb::of(&shares, lights.highlights.len()), QuotientWithHighlight(lookup, HalfRsqrt::get()));
-        let diffuse = || sums(setup, lengths, &lights.corners, &|channels| channels);
+        let diffuse = || sums(setup, lengths, &lights.corners, |channels| channels);
         if VERTEX_COLOURS && let Some(albedos) = albedos {
             let patch = || (((diffuse(), colour(setup, albedos)), halves), lengths.square(setup));
             let shader = LitShader::of::<Coloured<SummedWithHighlights>>(colours, at);
