@@ -378,10 +378,7 @@ macro_rules! paint {
 /// Adds the sum in `$sum` to ambient light, and multiplies both by a colour.
 macro_rules! painted_sum {
     ($to:literal, $sum:literal, $colour:literal, $at:literal) => {
-        concat!(
-            concat!("ldrd r9, lr, [r12, #", $at, "]\n add ", $sum, ", lr, ", $sum, ", lsl #3\n"),
-            paint!($to, $sum, $colour)
-        )
+        concat!(concat!("ldrd r9, lr, [r12, #", $at, "]\n add ", $sum, ", lr, ", $sum, ", lsl #3\n"), paint!($to, $sum, $colour))
     };
 }
 

@@ -89,6 +89,9 @@ pub trait LitColours: ByRows {
     /// Whether a level gives a colour, so that light without a highlight can be fitted and walked as one level.
     const TABLED: bool;
 
+    /// See [`PixelShader::TRANSPARENT`](crate::raster::pixel_shader::PixelShader::TRANSPARENT).
+    const TRANSPARENT: bool = true;
+
     /// The diffuse level at cosine 1, Q9.7: the unit in which diffuse light is walked.
     fn diffuse(&self) -> u16;
 
@@ -672,6 +675,8 @@ impl<C: Pixel> LitColours for SummedRgb<'_, C> {
     type Pixel = C;
 
     const TABLED: bool = false;
+
+    const TRANSPARENT: bool = false;
 
     fn diffuse(&self) -> u16 {
         OneLightRgb::<C>::DIFFUSE

@@ -41,6 +41,12 @@ impl<C> Band<'_, C> {
         clear_depth(self.depth.get_mut(first..end).unwrap_or_default());
     }
 
+    /// Whether the surface that is drawn lets light through.
+    #[inline(always)]
+    pub(crate) fn is_transparent(&self) -> bool {
+        self.sheet.iter().any(|sheet| sheet.glass.is_some())
+    }
+
     /// The first row, and one past the last.
     pub(crate) fn range(&self) -> [i32; 2] {
         [self.top, self.top.wrapping_add(self.rows)]

@@ -22,6 +22,9 @@ pub trait PixelShader<V>: ByRows {
     /// Number of the shader among the method's shaders. It is saved with an active triangle.
     const ID: u8 = 0;
 
+    /// Whether the shader draws transparent surfaces, for which there are no kernels. Others take a shader of the same colours there.
+    const TRANSPARENT: bool = true;
+
     /// What is added to all values of the current row; `None` if nothing is, in any row.
     #[inline(always)]
     fn raise(&self) -> Option<V> {

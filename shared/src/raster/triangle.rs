@@ -2,7 +2,6 @@
 
 use crate::{
     arch::product::HALVES,
-    features::TRANSPARENCY,
     format::{DEPTH, DEPTH_NODE, DEPTH_WALK, SUBPIXEL},
     geometry::projection::ScreenVertex,
     interpolate::{Constant, Patch, Walker, plane::Plane},
@@ -237,7 +236,7 @@ impl<'f> ScreenTriangle<'f> {
         shader: T,
         band: &mut Band<'_, T::Pixel>,
     ) -> u32 {
-        if TRANSPARENCY && band.sheet.iter().any(|sheet| sheet.glass.is_some()) {
+        if T::TRANSPARENT && band.is_transparent() {
             return self.walk_glass(gradients, depth, patch, shader, band);
         }
         if const { is_same(T::KERNEL, P::FIELDS) && (T::ALONE || D::WORDS > 0) } {
@@ -387,9 +386,9 @@ impl<'f> ScreenTriangle<'f> {
         let sides = &self.rows.sides;
         match sides.below() {
             Some(turn) => part([sides.row, sides.stop], pair, turn, band).map_or(0, |rows| lit.fill(rows, depth, fields)),
-            None => self.fill_parts(pair, band, &mut |rows, is_odd| {
-                if is_odd { lit.from_second_row() } else { *lit }.fill(rows, depth, fields)
-            }),
+            None => {
+                self.fill_parts(pair, band, &mut |rows, is_odd| if is_odd { lit.from_second_row() } else { *lit }.fill(rows, depth, fields))
+            }
         }
     }
 

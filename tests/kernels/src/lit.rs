@@ -2,7 +2,9 @@
 
 use crate::{GUARD, PIXELS, Random, line, plane, say};
 use cortex_m_semihosting::debug;
-use microphong_kernels::{Colours, Fields, Format, Highlights, Lit, Lookup, MAX_HEIGHT, Plane, Quadric, Roots, Rows, Shares, Sides, Sums, Turn};
+use microphong_kernels::{
+    Colours, Fields, Format, Highlights, Lit, Lookup, MAX_HEIGHT, Plane, Quadric, Roots, Rows, Shares, Sides, Sums, Turn,
+};
 
 /// Cases for each kernel.
 const CASES: u32 = 10_000;
@@ -48,8 +50,8 @@ enum Light {
     Table,
     Lights(usize),
     Summed,
-    PaintedLight,
-    PaintedSum,
+    Painted,
+    PaintedSums,
 }
 
 /// A kernel: the format of channels, the light, and the number of highlights.
@@ -68,11 +70,11 @@ const KERNELS: [Kernel; 17] = [
     (Format::Rgb, Light::Summed, 0),
     (Format::Rgb, Light::Summed, 1),
     (Format::Bgr, Light::Summed, 2),
-    (Format::Rgb, Light::PaintedLight, 0),
-    (Format::Swapped, Light::PaintedLight, 1),
-    (Format::Rgb, Light::PaintedSum, 0),
-    (Format::Swapped, Light::PaintedSum, 1),
-    (Format::Rgb, Light::PaintedSum, 2),
+    (Format::Rgb, Light::Painted, 0),
+    (Format::Swapped, Light::Painted, 1),
+    (Format::Rgb, Light::PaintedSums, 0),
+    (Format::Swapped, Light::PaintedSums, 1),
+    (Format::Rgb, Light::PaintedSums, 2),
 ];
 
 /// The number of numerators.
@@ -82,8 +84,8 @@ fn numerators((_, light, highlights): Kernel) -> usize {
             Light::Table => 1,
             Light::Lights(lights) => lights,
             Light::Summed => 3,
-            Light::PaintedLight => 4,
-            Light::PaintedSum => 6,
+            Light::Painted => 4,
+            Light::PaintedSums => 6,
         }
 }
 
@@ -126,8 +128,8 @@ impl Case {
             Light::Lights(1) => Colours::Light(self.sums.each_ref().map(|[first, _]| first)),
             Light::Lights(_) => Colours::TwoLights(self.sums.each_ref()),
             Light::Summed => Colours::Summed(self.shares.each_ref()),
-            Light::PaintedLight => Colours::PaintedLight(self.shares.each_ref()),
-            Light::PaintedSum => Colours::PaintedSum(self.shares.each_ref()),
+            Light::Painted => Colours::PaintedLight(self.shares.each_ref()),
+            Light::PaintedSums => Colours::PaintedSum(self.shares.each_ref()),
         };
         let lit = match format {
             Format::Rgb => Lit::new::<{ Format::Rgb as u8 }>(colours, highlights, lookup),
@@ -166,7 +168,7 @@ impl Case {
                     }
                 }
             }
-            Light::PaintedLight => {
+            Light::Painted => {
                 let level = cosine(over_length(value()));
                 let highlight = if highlights > 0 { highlight(value()) } else { 0 };
                 for (channel, [rounding, ambient, diffuse, specular]) in channels.iter_mut().zip(self.shares[parity]) {
@@ -174,7 +176,7 @@ impl Case {
                     *channel = lit.wrapping_add(rounding).wrapping_add(specular.wrapping_mul(highlight));
                 }
             }
-            Light::Summed | Light::PaintedSum => {
+            Light::Summed | Light::PaintedSums => {
                 let sums = [over_length(value()), over_length(value()), over_length(value())];
                 for ((channel, sum), [rounding, ambient, ..]) in channels.iter_mut().zip(sums).zip(self.shares[parity]) {
                     let level = ambient.wrapping_add(sum << 3);
@@ -243,7 +245,11 @@ pub(crate) fn compare(random: &mut Random) -> (u32, u32) {
             let mut sum = || [(random.next() >> 3) as i32, random.next() as i32 >> 17, random.next() as i32 >> 17];
             let mut sums = || [sum(), sum(), sum()];
             let sums = [[sums(), sums()], [sums(), sums()]];
-            let mut shares = || [0; 3].map(|_: i32| [(random.next() >> 8) as i32, (random.next() >> 3) as i32, random.next() as i32 >> 17, random.next() as i32 >> 17]);
+            let mut shares = || {
+                [0; 3].map(|_: i32| {
+                    [(random.next() >> 8) as i32, (random.next() >> 3) as i32, random.next() as i32 >> 17, random.next() as i32 >> 17]
+                })
+            };
             let shares = [shares(), shares()];
             let case = Case { kernel, width, first, height, turn, top: random.next() as i32 >> 10, sums, shares };
             let [l, r] = [line(random, width), line(random, width)];
@@ -272,7 +278,16 @@ pub(crate) fn compare(random: &mut Random) -> (u32, u32) {
             (cases, pixels) = (cases + 1, pixels + expected);
         }
         // Rows that do not fit change nothing.
-        let fits = Case { kernel, width: 20, first: 10, height: 10, turn: Turn::default(), top: 0, sums: [[[[1; 3]; 3]; 2]; 2], shares: [[[1; 4]; 3]; 2] };
+        let fits = Case {
+            kernel,
+            width: 20,
+            first: 10,
+            height: 10,
+            turn: Turn::default(),
+            top: 0,
+            sums: [[[[1; 3]; 3]; 2]; 2],
+            shares: [[[1; 4]; 3]; 2],
+        };
         for case in [Case { first: 21, ..fits.clone() }, Case { height: MAX_HEIGHT + 1, width: 0, ..fits.clone() }] {
             let before = State {
                 pixels: [0x5555; PIXELS + 2 * GUARD],

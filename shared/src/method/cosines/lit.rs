@@ -94,6 +94,8 @@ impl<V, T: Shades<L>, K: AtPixel<V>, L: FromValues<K::Common, K::Values>> PixelS
 
     const CHEAP: bool = T::TABLED;
 
+    const TRANSPARENT: bool = T::TRANSPARENT;
+
     const ID: u8 = L::ID;
 
     #[inline(always)]

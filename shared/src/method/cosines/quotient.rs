@@ -15,8 +15,8 @@ use crate::{
     lighting::{
         albedo::{Albedo, SHARE},
         constant_lights::{
-            COLOUR, Coloured, ColouredRgb, DiffuseOnly, KERNEL_BITS, LitColours, MayHaveHighlight, OneLightRamp, OneLightRgb, Shades, SurfaceColour,
-            WithHighlight, node,
+            COLOUR, Coloured, ColouredRgb, DiffuseOnly, KERNEL_BITS, LitColours, MayHaveHighlight, OneLightRamp, OneLightRgb, Shades,
+            SurfaceColour, WithHighlight, node,
         },
         material_tables::MaterialTables,
     },

@@ -21,7 +21,9 @@ use crate::{
     },
     lighting::{
         albedo::Albedo,
-        constant_lights::{Coloured, ColouredRgb, DiffuseOnly, LitColours, OneLightRamp, OneLightRgb, Shades, SurfaceColour, WithHighlight, node},
+        constant_lights::{
+            Coloured, ColouredRgb, DiffuseOnly, LitColours, OneLightRamp, OneLightRgb, Shades, SurfaceColour, WithHighlight, node,
+        },
         lights::Source,
         material_tables::MaterialTables,
         reflectance::{Highlight, Reflectance, Reflection},

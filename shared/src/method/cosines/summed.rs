@@ -16,7 +16,9 @@ use crate::{
     },
     lighting::{
         albedo::{Albedo, SHARE},
-        constant_lights::{Coloured, DiffuseOnly, LitColours, SUMMED, Summed, SummedColours, SummedRgb, SummedWithHighlights, SurfaceColour, cosine},
+        constant_lights::{
+            Coloured, DiffuseOnly, LitColours, SUMMED, Summed, SummedColours, SummedRgb, SummedWithHighlights, SurfaceColour, cosine,
+        },
         lights::Viewer,
         material_tables::MaterialTables,
         summed::{Sides, at_vertex, part},
@@ -35,7 +37,9 @@ use crate::{
                 self,
                 term::{NearTerm, NearTerms},
             },
-            quotient::{HalfReciprocal, LEVEL, NODE, PIXEL, Quotient, QuotientWithHighlight, RANGE, colour, has_kernels, is_plane, numerator, plane},
+            quotient::{
+                HalfReciprocal, LEVEL, NODE, PIXEL, Quotient, QuotientWithHighlight, RANGE, colour, has_kernels, is_plane, numerator, plane,
+            },
             scale::{Lengths, STEEPEST},
         },
         largest,
@@ -230,7 +234,12 @@ where
     let by_cosine = tables.reflectance.table()?.by_cosine();
     let shader =
         OneByOne::<C, NEAR> { colours, lookup, by_cosine, lengths: HalfRsqrt::get(), lights, near: &near, row: setup.gradients.row() };
-    if const { !NEAR && !C::GRAY && has_kernels::<C>() } && !has_texture && lights.suit_kernels() && colours.is_fine() {
+    if const { !NEAR && !C::GRAY && has_kernels::<C>() }
+        && !has_texture
+        && lights.suit_kernels()
+        && colours.is_fine()
+        && !band.is_transparent()
+    {
         let of = WithKernels { lights, colours, lookup, colour: if one_colour.is_none() { setup.albedos() } else { None } };
         return of.draw(setup, lengths, band);
     }
