@@ -6,7 +6,7 @@
 //!
 //! This is the only crate of the library with `unsafe` code. [`Rows`] are checked once for each call: all of them lie within the slices. A
 //! kernel compares the right side with the width in each row. So whatever the sides are, it reads and writes nothing else. On processors without
-//! kernels ([`AVAILABLE`]) every function returns `None`, and `microphong` fills the rows by its loops in Rust. These store the same bits if all sides
+//! kernels ([`AVAILABLE`], [`LIT_AVAILABLE`]) functions return `None`, among them [`Lit::new`], and `microphong` fills the rows by its loops in Rust. These store the same bits if all sides
 //! lie within the width.
 
 #![no_std]
@@ -21,6 +21,8 @@ mod processor;
 mod lit;
 
 use core::mem::MaybeUninit;
+#[cfg(kernels = "armv7m")]
+use core::mem::offset_of;
 use embedded_graphics_core::pixelcolor::{Bgr565, Rgb565};
 
 /// Whether there are kernels for the processor that is compiled for.
@@ -298,9 +300,10 @@ pub struct Lookup<'a> {
 
 /// The colours of light, for the first row and for the second, in turn.
 ///
-/// A kernel divides numerators by the root of a square. Their order is that of this text. The quotient of a light or of a sum is a level with 19 fraction
-/// bits. For a light a cosine of 1 is the level 2^7, and it is clamped to 0 and 1. The quotient of a highlight is a place in the table of highlights. Shares
-/// of red, green and blue are not divided. They have 29 fraction bits, and both ambient and diffuse light are multiplied by them.
+/// A kernel divides numerators by the root of a square. Numerators are added to [`Fields`] in the order in which the text of a variant names them. The
+/// quotient of a light or of a sum is a level with 19 fraction bits. In all variants but [`Self::Table`], the level of a light is 2^7 where its cosine is 1,
+/// and is clamped to cosines from 0 to 1. The quotient of a highlight is a place in the table of highlights. Shares of red, green and blue are not divided.
+/// They have 29 fraction bits, and both ambient and diffuse light are multiplied by them.
 #[derive(Clone, Copy, Debug)]
 pub enum Colours<'a> {
     /// A table of colours, for a light, and a highlight if there is one. A negative level counts as 0. With a highlight, 2^12 times the entry of the table is
@@ -325,7 +328,8 @@ pub type Quadric = [i32; 6];
 /// Most numerators of a kernel.
 const NUMERATORS: usize = 8;
 
-/// Linear numerators, and the quadratic square of the length by which they are divided. Kernels step all of them.
+/// Linear fields, and the quadratic square of a length. A kernel walks and steps as many of the linear fields as it needs, and leaves the others unchanged.
+/// Assembler reads this structure, so the order of its members matters.
 #[derive(Debug)]
 #[repr(C)]
 pub struct Fields<'a> {
@@ -361,6 +365,10 @@ impl<'a> Fields<'a> {
 /// A kernel.
 #[cfg(kernels = "armv7m")]
 type LitKernel = unsafe extern "C" fn(&mut Sides, &mut Plane, &mut Fields<'_>, &LitJob) -> u32;
+
+// Assembler has these numbers as constants.
+#[cfg(kernels = "armv7m")]
+const _: () = assert!(offset_of!(Fields<'_>, square) == 0 && offset_of!(Fields<'_>, planes) == 8 && size_of::<LitJob>() == 56);
 
 /// A kernel that computes light at each pixel, and what it reads. There are none for other processors.
 #[derive(Clone, Copy, Debug)]
@@ -423,7 +431,7 @@ impl<'a> Lit<'a> {
         }
     }
 
-    /// The same, with the colours of the second row first.
+    /// The kernel that begins with the colours of the second row.
     #[must_use]
     pub fn from_second_row(self) -> Self {
         #[cfg(kernels = "armv7m")]

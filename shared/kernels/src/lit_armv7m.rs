@@ -89,8 +89,8 @@ macro_rules! pack {
 
 /// Defines a kernel for numerators of these numbers. `$pixel` makes the pixel of number `r10` and stores it at `[r0, r10, lsl #1]`. It finds half the reciprocal
 /// length in `r3`, the place in the table of highlights in `r8`, this table in `r9`, the colours of the row in `r12`, and the table of roots in
-/// `lr`. It may overwrite `r3` to `r7`. If it overwrites `r9` or `lr`, `$reload` loads them again before each pixel. If it overwrites `r8`, it loads `r8`
-/// itself before it uses it.
+/// `lr`. It may overwrite `r3` to `r9` and `lr`, but none of `r0` to `r2` and `r10` to `r12`. If it overwrites `r9` or `lr`, `$reload` loads them again before
+/// each pixel. `r8` is not loaded again: a pixel that overwrites it reads the place from the stack.
 macro_rules! kernel {
     ($(#[$doc:meta])* $name:ident $(<$format:ident>)?, [$($number:literal)*], $reload:expr, $pixel:expr) => {
         $(#[$doc])*
@@ -343,7 +343,7 @@ macro_rules! sum {
     };
 }
 
-/// Adds the highlight in `r7` to the level in `$to`. Its factor is the third number of the channel, or another one.
+/// Adds the highlight in `r7` to the level in `$to`. Its factor lies 8 bytes behind `$at`, or `$factor` bytes. `lr` is overwritten.
 macro_rules! add_highlight {
     ($to:literal, $at:literal) => {
         add_highlight!(8; $to, $at)
@@ -375,14 +375,14 @@ macro_rules! paint {
     };
 }
 
-/// Adds the sum in `$sum` to ambient light, and multiplies both by a colour.
+/// Adds the sum in `$sum` to ambient light, and multiplies both by a colour. `r9` and `lr` are overwritten.
 macro_rules! painted_sum {
     ($to:literal, $sum:literal, $colour:literal, $at:literal) => {
         concat!(concat!("ldrd r9, lr, [r12, #", $at, "]\n add ", $sum, ", lr, ", $sum, ", lsl #3\n"), paint!($to, $sum, $colour))
     };
 }
 
-/// Adds the light of the cosine in `r4` to ambient light, and multiplies both by a colour.
+/// Adds the light of the cosine in `r4` to ambient light, and multiplies both by a colour. `r6`, `r9` and `lr` are overwritten.
 macro_rules! painted_light {
     ($to:literal, $colour:literal, $at:literal) => {
         concat!(
@@ -392,14 +392,14 @@ macro_rules! painted_light {
     };
 }
 
-/// The quotients of sums in `r4` to `r6`. Before them, the second one is free.
+/// The quotients of the sums in `r4` to `r6`. `lr` is overwritten.
 macro_rules! sums {
     () => {
         concat!(quotient!("r4", "lr", 12), quotient!("r5", "lr", 28), quotient!("r6", "lr", 44))
     };
 }
 
-/// The highlights of two lights in `r7` and `r8`.
+/// The highlights of two lights in `r7` and `r8`. `lr` is overwritten.
 macro_rules! two_highlights {
     ($first:literal, $second:literal) => {
         concat!(

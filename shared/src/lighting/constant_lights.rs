@@ -107,7 +107,7 @@ pub trait Shades<L>: LitColours {
     /// The colour of light whose diffuse levels have `bits` fraction bits.
     fn colour(&self, bits: u32, light: L) -> Self::Pixel;
 
-    /// The number of numerators of the light that a kernel in assembler divides by a length; 0 if there is no kernel.
+    /// The number of planes that the patch lends to a kernel in assembler; 0 if there is no kernel.
     const NUMERATORS: usize = 0;
 
     /// The kernel.
@@ -121,7 +121,7 @@ pub trait Shades<L>: LitColours {
 pub(crate) const KERNEL_BITS: u32 = 19;
 
 // Kernels contain these numbers as constants.
-const _: () = assert!(KERNEL_BITS + FULL_BITS - FACTOR == 11 && CHANNEL == 22 && LEVEL == 7);
+const _: () = assert!(KERNEL_BITS + FULL_BITS - FACTOR == 11 && CHANNEL == 22 && LEVEL == 7 && COLOUR == 29 && RAMP == 512);
 
 /// A light whose type tells whether it has a highlight.
 pub trait MayHaveHighlight: Into<WithHighlight> {
@@ -787,3 +787,74 @@ impl<'a, C> TwoLightsRgb<'a, C> {
 
 /// Sums of levels below this limit, Q9.7, are entries of a table of colours.
 pub(super) const LARGEST: u32 = (RAMP as u32 - BIAS as u32 - 1) << LEVEL;
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use embedded_graphics_core::pixelcolor::Rgb565;
+    use proptest::prelude::*;
+
+    const CASES: u32 = 2_000;
+
+    proptest! {
+        #![proptest_config(ProptestConfig::with_cases(CASES))]
+        /// The colours that kernels draw by sums are those of the loop in Rust, on even rows and on odd ones.
+        #[test]
+        fn kernels_of_sums_have_the_colours_of_the_loop(
+            ambient in prop::array::uniform2(prop::array::uniform3(-1i32 << 29..1 << 29)),
+            pure in prop::array::uniform3(0i32..1 << 29),
+            sums in prop::array::uniform3(-1i32 << 26..1 << 26),
+            factors in prop::array::uniform2(prop::array::uniform3(0i32..1 << 13)),
+            highlights in prop::array::uniform2(0u32..1 << 16),
+            colour in prop::array::uniform3(0u32..=1 << COLOUR),
+        ) {
+            let [even, odd] = ambient.map(|levels| levels.map(|level| Sum::new(level, 0, 0)));
+            let bits = CHANNEL - INTENSITY;
+            let mut loops = SummedColours::<Rgb565> { ambient: ByTurns::new([&even, &odd]), greys: &[0; RAMP], bits };
+            prop_assert!(loops.is_fine());
+            let (one_colour, painted) = (loops.shares(None, factors), loops.shares(Some(&pure), factors));
+            let mut kernels = [&one_colour, &painted].map(|shares| SummedRgb::<Rgb565>::of(shares, 2));
+            let light = SummedWithHighlights(Summed(sums), highlights);
+            let highlit = |levels: [i32; 3]| {
+                factors.iter().zip(highlights).fold(levels, |levels, (factors, highlight)| {
+                    zip(levels, *factors, |level, factor| level.wrapping_add(factor.wrapping_mul(highlight as i32)))
+                })
+            };
+            for _ in 0..2 {
+                let levels = loops.levels(Summed(sums));
+                prop_assert_eq!(kernels[0].colour(0, light), loops.mixed(highlit(levels)));
+                prop_assert_eq!(kernels[1].colour(0, Coloured(light, colour)), loops.mixed(highlit(loops.painted(levels, pure, colour))));
+                loops.step_row();
+                kernels.iter_mut().for_each(ByRows::step_row);
+            }
+        }
+
+        /// Where red and blue have the same levels, they have the same colours by both ways to draw a colour that is walked.
+        #[test]
+        fn neutral_colours_are_those_of_all_channels(
+            levels in prop::array::uniform2((0i32..1 << 28, 0u16..1 << 15, 0u16..1 << 15)),
+            quarter in 0i32..1 << 18,
+            diffuse in -1i32 << 27..1 << 27,
+            highlight in 0u32..1 << 16,
+            colour in prop::array::uniform3(0u32..=1 << COLOUR),
+        ) {
+            let [outer, middle] = levels;
+            let pure = [outer.0, middle.0, outer.0];
+            let sums = |quarter: i32| {
+                let rounding = steps(Rgb565::LEVELS, half_step(8) + quarter);
+                let sum = |(ambient, diffuse, specular): (i32, u16, u16), rounding: i32| Sum::new(ambient + rounding, diffuse, specular);
+                [sum(outer, rounding[0]), sum(middle, rounding[1]), sum(outer, rounding[2])]
+            };
+            let [even, odd] = [sums(-quarter), sums(quarter)];
+            let shares = [&even, &odd].map(|sums| zip(*sums, pure, |sum, pure| sum.shares(pure)));
+            let mut neutral = NeutralRgb::<Rgb565>::new(&even, quarter).expect("red and blue are alike");
+            let mut all = ColouredRgb::<Rgb565>::of(&shares);
+            for _ in 0..2 {
+                let light = Coloured(WithHighlight(diffuse, highlight), colour);
+                prop_assert_eq!(Shades::colour(&neutral, KERNEL_BITS, light), all.colour(KERNEL_BITS, light));
+                neutral.step_row();
+                all.step_row();
+            }
+        }
+    }
+}

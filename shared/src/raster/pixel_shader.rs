@@ -22,7 +22,8 @@ pub trait PixelShader<V>: ByRows {
     /// Number of the shader among the method's shaders. It is saved with an active triangle.
     const ID: u8 = 0;
 
-    /// Whether the shader draws transparent surfaces, for which there are no kernels. Others take a shader of the same colours there.
+    /// Whether the shader can draw transparent surfaces. It is false for a shader that exists only for kernels, which draw none. Its caller takes another
+    /// shader of the same colours there.
     const TRANSPARENT: bool = true;
 
     /// What is added to all values of the current row; `None` if nothing is, in any row.
@@ -41,7 +42,7 @@ pub trait PixelShader<V>: ByRows {
     /// Whether the kernel also fills rows without a depth test.
     const ALONE: bool = false;
 
-    /// The kernel, if one of the fields is quadratic.
+    /// The kernel for fields of which one is quadratic.
     #[inline(always)]
     fn lit(&self) -> Option<kernels::Lit<'_>> {
         None

@@ -353,7 +353,7 @@ impl<'f> ScreenTriangle<'f> {
     ) -> u32 {
         let sides = &self.rows.sides;
         let mut pair = sides.pair;
-        // The first case is the usual one: without a closure nothing is kept in memory for it.
+        // The first case is the usual one. It has no closure, because the compiler would keep the state of a closure in memory.
         let filled = match sides.below() {
             Some(turn) => {
                 let rows = part([sides.row, sides.stop], &mut pair, turn, band);

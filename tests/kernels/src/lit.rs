@@ -89,18 +89,21 @@ fn numerators((_, light, highlights): Kernel) -> usize {
         }
 }
 
+/// Pixels or their depth, with guards around them.
+type Padded = [u16; PIXELS + 2 * GUARD];
+
 /// What a kernel changes.
 #[derive(Clone, PartialEq)]
 struct State {
-    pixels: [u16; PIXELS + 2 * GUARD],
-    depth: [u16; PIXELS + 2 * GUARD],
+    pixels: Padded,
+    depth: Padded,
     sides: Sides,
     plane: Plane,
     planes: [Plane; 8],
     square: Quadric,
 }
 
-/// What it does not.
+/// What a kernel reads and does not change.
 #[derive(Clone)]
 struct Case {
     kernel: Kernel,
@@ -111,18 +114,30 @@ struct Case {
     top: i32,
     sums: [[Sums; 2]; 2],
     shares: [Shares; 2],
+    /// Whether the colours of the second row come first.
+    from_second_row: bool,
 }
 
 impl Case {
     fn by_kernel(&self, state: &mut State) -> Option<u32> {
-        let &Self { width, first, height, turn, top, kernel: (format, light, highlights), .. } = self;
         let State { pixels, depth, sides, plane, planes, square } = state;
         let mut fields = Fields::default();
         planes.iter_mut().take(numerators(self.kernel)).for_each(|plane| fields.add_numerator(plane));
         fields.set_square(square);
+        self.by_kernel_of((pixels, depth, sides, plane), &mut fields, Some(&HIGHLIGHTS))
+    }
+
+    /// Draws with these fields and this table of highlights.
+    fn by_kernel_of(
+        &self,
+        (pixels, depth, sides, plane): (&mut Padded, &mut Padded, &mut Sides, &mut Plane),
+        fields: &mut Fields<'_>,
+        highlights_table: Option<&Highlights>,
+    ) -> Option<u32> {
+        let &Self { width, first, height, turn, top, kernel: (format, light, highlights), .. } = self;
         let (pixels, depth) = (&mut pixels[GUARD..][..PIXELS], &mut depth[GUARD..][..PIXELS]);
         let rows = Rows { pixels, depth, width, first, height, sides, turn };
-        let lookup = Lookup { roots: &ROOTS, highlights: Some(&HIGHLIGHTS), top };
+        let lookup = Lookup { roots: &ROOTS, highlights: highlights_table, top };
         let colours = match light {
             Light::Table => Colours::Table(RAMPS.each_ref()),
             Light::Lights(1) => Colours::Light(self.sums.each_ref().map(|[first, _]| first)),
@@ -136,7 +151,7 @@ impl Case {
             Format::Bgr => Lit::new::<{ Format::Bgr as u8 }>(colours, highlights, lookup),
             Format::Swapped => Lit::new::<{ Format::Swapped as u8 }>(colours, highlights, lookup),
         };
-        lit.map(|lit| lit.fill(rows, plane, &mut fields))
+        lit.map(|lit| if self.from_second_row { lit.from_second_row() } else { lit }.fill(rows, plane, fields))
     }
 
     /// The pixel of these fields, on an even row of the kernel or on an odd one.
@@ -215,7 +230,8 @@ impl Case {
                     let inv_depth = (plane[0].wrapping_add(plane[1].wrapping_mul(column as i32)) as u32 >> 16) as u16;
                     if inv_depth > depth[start + column] {
                         depth[start + column] = inv_depth;
-                        pixels[start + column] = self.pixel(planes, square, column as i32, row as usize % 2);
+                        pixels[start + column] =
+                            self.pixel(planes, square, column as i32, (row as usize + usize::from(self.from_second_row)) % 2);
                     }
                 }
             }
@@ -251,7 +267,17 @@ pub(crate) fn compare(random: &mut Random) -> (u32, u32) {
                 })
             };
             let shares = [shares(), shares()];
-            let case = Case { kernel, width, first, height, turn, top: random.next() as i32 >> 10, sums, shares };
+            let case = Case {
+                kernel,
+                width,
+                first,
+                height,
+                turn,
+                top: random.next() as i32 >> 10,
+                sums,
+                shares,
+                from_second_row: number % 2 == 1,
+            };
             let [l, r] = [line(random, width), line(random, width)];
             // Quotients of small numerators often lie between the ends of tables.
             let shift = 5 * random.below(3);
@@ -277,7 +303,7 @@ pub(crate) fn compare(random: &mut Random) -> (u32, u32) {
             }
             (cases, pixels) = (cases + 1, pixels + expected);
         }
-        // Rows that do not fit change nothing.
+        // Rows that do not fit change nothing, and neither does a kernel without all of its fields. Without its table there is no kernel.
         let fits = Case {
             kernel,
             width: 20,
@@ -287,22 +313,44 @@ pub(crate) fn compare(random: &mut Random) -> (u32, u32) {
             top: 0,
             sums: [[[[1; 3]; 3]; 2]; 2],
             shares: [[[1; 4]; 3]; 2],
+            from_second_row: false,
+        };
+        let before = State {
+            pixels: [0x5555; PIXELS + 2 * GUARD],
+            depth: [0; PIXELS + 2 * GUARD],
+            sides: [1 << 21, 1 << 20, 12 << 21, 1 << 20],
+            plane: [1 << 30, 0, 1],
+            planes: [[1 << 29; 3]; 8],
+            square: [1 << 29; 6],
         };
         for case in [Case { first: 21, ..fits.clone() }, Case { height: MAX_HEIGHT + 1, width: 0, ..fits.clone() }] {
-            let before = State {
-                pixels: [0x5555; PIXELS + 2 * GUARD],
-                depth: [0; PIXELS + 2 * GUARD],
-                sides: [1 << 21, 1 << 20, 12 << 21, 1 << 20],
-                plane: [1 << 30, 0, 1],
-                planes: [[1 << 29; 3]; 8],
-                square: [1 << 29; 6],
-            };
             let mut state = before.clone();
             let count = case.by_kernel(&mut state);
             if count != Some(0) || state != before {
                 say(format_args!("light by {kernel:?} draws rows that do not fit: count {count:?}"));
                 debug::exit(debug::EXIT_FAILURE);
             }
+        }
+        for (numerators, has_square) in [(numerators(kernel) - 1, true), (numerators(kernel), false)] {
+            let mut state = before.clone();
+            let State { pixels, depth, sides, plane, planes, square } = &mut state;
+            let mut fields = Fields::default();
+            planes.iter_mut().take(numerators).for_each(|plane| fields.add_numerator(plane));
+            if has_square {
+                fields.set_square(square);
+            }
+            let count = fits.by_kernel_of((pixels, depth, sides, plane), &mut fields, Some(&HIGHLIGHTS));
+            if count != Some(0) || state != before {
+                say(format_args!("light by {kernel:?} draws without all fields: count {count:?}"));
+                debug::exit(debug::EXIT_FAILURE);
+            }
+        }
+        let (mut state, (_, _, highlights)) = (before.clone(), kernel);
+        let State { pixels, depth, sides, plane, .. } = &mut state;
+        let count = fits.by_kernel_of((pixels, depth, sides, plane), &mut Fields::default(), None);
+        if count.is_some() != (highlights == 0) || state != before {
+            say(format_args!("light by {kernel:?} needs no table of highlights: count {count:?}"));
+            debug::exit(debug::EXIT_FAILURE);
         }
     }
     (cases, pixels)

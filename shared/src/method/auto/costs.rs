@@ -1,11 +1,14 @@
 //! Costs of the ways to draw a triangle, by which `auto` chooses.
 //!
 //! Costs are set-up for each triangle, the rest of each row, and the inner loop for each pixel, as `microphong bench` counts them. The choice is the
-//! same on every machine, and so are the pictures. So costs are means of three processors, and of two scenes: one with large triangles and one with
-//! small ones, `peer-sphere` and `teapot` in one channel, `peer-sphere-plastic` and `torus` in three, `peer-sphere-lights` and `bunny` under two
-//! lights. Such means make the sum of the frame times, each relative to that of its processor, the least. With the costs of the Cortex-M3 alone, which
-//! has kernels for Phong shading, its frames would take up to 9 % less, and those of the Pico up to 14 % more. `tests/suite/choices.rs` counts
-//! everything again that can be drawn alone: all but the quadratic through cosines, which takes less set-up than the method `sqrt6`.
+//! same on every machine, and so are the pictures. So costs are means of three processors. An instruction counts 1 on a Cortex-M3, 0.72 on a RISC-V
+//! processor, and 0.49 on a Cortex-M0+: the reciprocal of how many of them a frame takes, relative to the Cortex-M3. With these weights, the sum of frame
+//! times, each divided by the usual frame time of its processor, is least. A table of the Cortex-M3 alone, which has kernels for Phong shading, would
+//! save up to 9 % of its frames, and cost the Pico up to 14 %.
+//!
+//! Costs are also means of two scenes: one with large triangles and one with small ones. These are `peer-sphere` and `teapot` in one channel,
+//! `peer-sphere-plastic` and `torus` in three, and `peer-sphere-lights` and `bunny` under two lights. `tests/suite/choices.rs` counts everything again
+//! that can be drawn alone. The quadratic through cosines cannot: the method `sqrt6` takes more set-up.
 
 /// Cost of drawing a triangle by a method, in instructions.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -65,9 +68,6 @@ impl Savings {
 const JUDGE_QUADRATIC: Cost = Cost::new(700, 0, 0);
 /// Cost of finding out whether a quadratic through cosines keeps to the budget.
 const JUDGE_COSINES: Cost = Cost::new(500, 0, 0);
-
-/// What an instruction counts on a Cortex-M3, on a RISC-V processor, and on a Cortex-M0+: the reciprocal of how many of them a frame takes.
-pub const SHARES: [f64; 3] = [1.0, 0.72, 0.49];
 
 /// Costs in one channel, in three, and under two lights.
 pub const COSTS: [LoopCosts; 3] = [

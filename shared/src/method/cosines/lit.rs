@@ -24,8 +24,7 @@ pub(super) trait AtPixel<V>: Copy {
     /// Divides walked values into what all lights have in common and the values of the lights.
     fn at(&self, value: V) -> (Self::Common, Self::Values);
 
-    /// Whether the values are planes that are divided by the root of a quadratic: that of each light, and that of its highlight if it has one. Kernels in assembler
-    /// compute this.
+    /// Whether walked values are planes, and the square of the length by which light is divided. Kernels in assembler walk such values.
     const IS_QUOTIENT: bool = false;
 
     /// Where kernels look up light.

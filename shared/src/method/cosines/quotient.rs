@@ -235,7 +235,7 @@ fn draw_painted<C: Pixel, P: Patch<Walker: Walker<Value: SurfaceColour>>>(
     tables: MaterialTables<'_, C>,
     band: &mut Band<'_, C>,
 ) -> Option<u32> {
-    // Kernels take the same time in all colours.
+    // A kernel takes as many instructions where red and blue have the same levels, so it draws the general colours.
     let neutral = if const { has_kernels::<C>() && P::FIELDS.is_some() } { None } else { tables.neutral_rgb() };
     match neutral {
         Some(colours) => draw_painted_in(setup, cosines, lengths, colour, colours, tables, band),

@@ -1,5 +1,6 @@
 //! Loops under any lights. The diffuse light of most constant lights is one sum, see [`crate::lighting::summed`]. Lights that end on a triangle are added
-//! one by one at each pixel, and so are highlights and near lights.
+//! one by one at each pixel, and so are highlights and near lights. On processors with kernels for it, up to two highlights are walked beside the sum
+//! instead, if no light ends on the triangle.
 //!
 //! Cost: that of three planes and a root for the sum; five products for each light that ends, and for each highlight the same and its table; for near
 //! lights see [`super::near::term`].
