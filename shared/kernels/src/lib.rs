@@ -6,8 +6,8 @@
 //!
 //! This is the only crate of the library with `unsafe` code. [`Rows`] are checked once for each call: all of them lie within the slices. A
 //! kernel compares the right side with the width in each row. So whatever the sides are, it reads and writes nothing else. On processors without
-//! kernels ([`AVAILABLE`], [`LIT_AVAILABLE`]) functions return `None`, among them [`Lit::new`], and `microphong` fills the rows by its loops in Rust. These store the same bits if all sides
-//! lie within the width.
+//! kernels ([`AVAILABLE`], [`LIT_AVAILABLE`]) functions return `None`, among them [`Lit::new`], and `microphong` fills the rows by its loops in Rust.
+//! These store the same bits if all sides lie within the width.
 
 #![no_std]
 
