@@ -144,7 +144,7 @@ impl Lighting {
     /// Computes how each light falls on a surface at `position` (Q7.25) with the normal `normal` (Q2.30, at most unit length), and adds it to `facing`.
     pub(crate) fn incident(&self, position: [i32; 3], normal: [i32; 3], mut facing: Option<&mut Facing>) -> impl Iterator<Item = Incident> {
         self.sources().iter().enumerate().map(move |(light, source)| {
-            let incident = source.incident(self.directions(source, position).map(|direction| cosine(normal, direction)), Some(position));
+            let incident = source.incident(self.directions(source, position).map(|direction| cosine(normal, direction)), position);
             if let Some(facing) = &mut facing {
                 facing.add(light, source.is_sky(), [incident.towards, incident.half]);
             }
@@ -210,25 +210,14 @@ impl Source {
         Self { vectors: [point, axis], kind, shape }
     }
 
-    /// How the light falls on a surface where N·L and N·H are `cosines`, at a position in object space (Q7.25). Lights that are no point lights need
-    /// none.
-    fn incident(&self, cosines: [i32; 2], position: Option<[i32; 3]>) -> Incident {
-        let [towards, half] = cosines;
-        let ([point, axis], full) = (self.vectors, 1 << STRENGTH);
-        match (self.shape.first(), position) {
-            _ if self.is_sky() => Incident { towards: part_of_sky(towards, COSINE), half, strength: full },
-            (Some(shape), Some(position)) if !shape.is_even() => {
-                Incident { towards, half, strength: shape.strength(axis, sub(point, position)) }
-            }
-            _ => Incident { towards, half, strength: full },
+    /// How the light falls on a surface at `position` (Q7.25), where N·L and N·H are `cosines`.
+    fn incident(&self, [towards, half]: [i32; 2], position: [i32; 3]) -> Incident {
+        let [point, _] = self.vectors;
+        match self.shape() {
+            _ if self.is_sky() => Incident { towards: part_of_sky(towards, COSINE), half, strength: 1 << STRENGTH },
+            Some((shape, axis)) => Incident { towards, half, strength: shape.strength(axis, sub(point, position)) },
+            _ => Incident::from([towards, half]),
         }
-    }
-
-    /// How a light that is no point light falls on a surface where N·L and N·H are `cosines`.
-    #[inline]
-    #[must_use]
-    pub fn distant(&self, cosines: [i32; 2]) -> Incident {
-        self.incident(cosines, None)
     }
 
     /// The range and the cone of a point light that has one, and the axis of the cone, Q2.30.
