@@ -30,6 +30,7 @@ use microphong::{
 use microphong_literature::sub_triangle::{ScreenSubTriangle, SubTriangle};
 use microphong_sim::{level, render, scene, shader::Shader, stress::random::Random};
 use microphong_tests::{cases, named, seed};
+use zerocopy::FromZeros;
 
 const SPLITTING: [&str; 4] = ["gouraud4", "pseudo-phong", "six-point-centre", "six-point-adaptive"];
 
@@ -64,7 +65,8 @@ fn parts_of_random_triangles_cover_each_pixel_once() {
     let (w, h) = (WIDTH as i32 * 16, HEIGHT as i32 * 16);
     let (mut triangles, mut covered) = (0, 0u64);
     // Every level is the same colour.
-    let tables = MaterialTables::<Gray8> { ramps: &[[1; RAMP]], reflectance: &LitMaterial::new(&Reflectance::EMPTY, None) };
+    let reflectance = Reflectance::new_zeroed();
+    let tables = MaterialTables::<Gray8> { ramps: &[[1; RAMP]], reflectance: &LitMaterial::new(&reflectance, None) };
     let cases = cases(12_000) as usize;
     for i in 0..cases {
         let corners = match i % 5 {

@@ -14,6 +14,7 @@ use microphong_render::{
     choices::{self, Told},
     render::{self, Style},
 };
+use zerocopy::FromZeros;
 
 /// A pixel that keeps its levels as they come. They are walked levels, which include half a step.
 #[derive(Clone, Copy, Debug)]
@@ -116,7 +117,7 @@ impl Walked {
     /// The materials of a stream as a method walks them. Some methods have loops for three channels alone.
     #[must_use]
     pub fn of(stream: &Stream<'_>, method: &Facts) -> Self {
-        let mut reflectance = Box::new(Reflectance::EMPTY);
+        let mut reflectance = Box::new(Reflectance::new_zeroed());
         let has_colours = |mesh: &&Mesh| mesh.flags & (HAS_COLOURS | HAS_TEXTURE) != 0;
         let is_coloured = |index: usize| stream.meshes.iter().filter(has_colours).any(|mesh| usize::from(mesh.material) == index);
         let highlight = (method.highlight, method.highlight_levels);

@@ -236,9 +236,6 @@ pub(crate) const FACTOR: u32 = CHANNEL - LEVEL;
 const FULL_BITS: u32 = 7;
 
 impl Sum {
-    /// Factors that are not filled yet; all zeros.
-    pub(super) const EMPTY: Self = Self { ambient: 0, diffuse: 0, specular: 0 };
-
     /// The factors for a level of ambient light with a constant for rounding, Q10.22, and levels of diffuse and specular light, Q9.7.
     pub(super) fn new(ambient: i32, diffuse: u16, specular: u16) -> Self {
         Self { ambient, diffuse: diffuse.into(), specular: (i32::from(specular) + 1) >> 1 }

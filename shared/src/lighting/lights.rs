@@ -105,7 +105,8 @@ impl Lighting {
         }
         self.count = lights.len() as u32;
         if !LIGHTS && lights.is_empty() {
-            (self.sources, self.count) = ([Source::NONE; ROOM], 1);
+            self.sources.zero();
+            self.count = 1;
         }
         self.directional = directions.are_directional.into();
         let is_local = NEAR_LIGHTS && camera.has_local_viewer();
@@ -191,19 +192,16 @@ impl Lighting {
 }
 
 impl Source {
-    /// A light of no direction.
-    const NONE: Self = Self { vectors: [[0; 3]; 2], kind: 0, shape: [Shape::NONE; SHAPES] };
-
     /// Transforms `light`, whose L and H in the world are known, to an object at the place `model_view`.
     fn new(light: &Light, directions: &[[i32; 3]; 2], model_view: &ModelView) -> Self {
         let kind = light.kind.into();
         if !NEAR_LIGHTS || light.kind != POINT {
             let [towards, half] = *directions;
-            return Self { vectors: [model_view.world_to_object(towards), model_view.world_to_object(half)], kind, ..Self::NONE };
+            return Self { vectors: [model_view.world_to_object(towards), model_view.world_to_object(half)], kind, ..Self::new_zeroed() };
         }
         let is_eye_space = light.space == EYE_SPACE;
         let point = if is_eye_space { model_view.point_to_object(light.vector) } else { model_view.world_point_to_object(light.vector) };
-        let (mut axis, mut shape) = ([0; 3], [Shape::NONE; SHAPES]);
+        let (mut axis, mut shape) = ([0; 3], <[Shape; SHAPES]>::new_zeroed());
         if let Some(shape) = shape.first_mut() {
             (*shape, axis) = Shape::new(light, model_view, model_view.shortened(light.vector, is_eye_space));
         }

@@ -210,7 +210,7 @@ mod tests {
 
     /// The reflectance of a material under one light in the pixel format `C`.
     fn reflectance<C: Pixel>(material: &Material, colour: [u16; 3]) -> Reflectance {
-        let mut reflectance = Reflectance::EMPTY;
+        let mut reflectance = Reflectance::new_zeroed();
         reflectance.fill(
             Channels::of::<C>(),
             [1 << UNIT; 3],

@@ -178,27 +178,6 @@ pub struct Reflectance {
 const NEUTRAL: u8 = 2;
 
 impl Reflectance {
-    /// A reflectance that is not computed yet; all zeros, which takes no flash in static memory.
-    pub const EMPTY: Self = Self {
-        base: [0; 3],
-        highlights: HighlightCurve::EMPTY,
-        three_channels: 0,
-        has_ramp: 0,
-        has_two_lights: 0,
-        computes_all: [0; 2],
-        quarter: 0,
-        ambient: [0; 3],
-        gains: [Gains::NONE; ROOM],
-        sums: [[[Sum::EMPTY; 3]; 3]; 2],
-        ambient_sums: [0; 3],
-        ramp: [0; 2],
-        highlight_threshold: 0,
-        lights: 0,
-        excess: 0,
-        table: 0,
-        depth: [0; 3],
-    };
-
     /// Computes the reflectance of `material` under `lights`, for a method with these highlights and for a pixel format with these `channels`.
     /// If the method allows it, and there is one channel and one light, the table of highlights `holds_levels` instead of fractions. A material
     /// `is_coloured` if a mesh has it whose corners have colours. The last flag tells whether the viewer is near.

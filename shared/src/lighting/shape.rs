@@ -44,9 +44,6 @@ pub struct Nearness {
 }
 
 impl Shape {
-    /// Neither range nor cone.
-    pub(super) const NONE: Self = Self { edge: 0, slope: 0, inverse_square: 0, exponent: 0 };
-
     /// The shape of `light` for an object at the place `model_view`, whose distance from the light has been shortened from the square root of
     /// `shortened`, as [`ModelView::shortened`] says. The axis of the cone is a unit vector from the light to where it shines, Q2.30; zero if there is
     /// no cone.

@@ -121,9 +121,6 @@ fn power(mut x: u32, mut n: u16) -> u32 {
 pub const ENTRY: u32 = 16;
 
 impl HighlightCurve {
-    /// A curve that is 0 everywhere.
-    pub(crate) const EMPTY: Self = Self { scale: 0, full: 0, n: 0, floor: 0, base: Base::Itself as u32 };
-
     /// The curve `floor + full base^n`.
     ///
     /// Domain: `n` is 1 to 1024, at least 2 for [`Base::Root`] and 4 for [`Base::FourthRoot`]; `full` and `floor` are unsigned Q0.16, their

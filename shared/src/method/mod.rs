@@ -58,6 +58,7 @@ pub use crate::{
 use core::fmt;
 pub use facts::{Facts, VertexLight};
 pub(crate) use perspective::{LinearWay, Middles};
+use zerocopy::FromZeros as _;
 // For the crate of the literature.
 #[doc(hidden)]
 pub use {
@@ -102,7 +103,7 @@ pub trait Method: Sync {
     /// here.
     #[doc(hidden)]
     fn error_bounds(&self, _reflectance: LitMaterial<'_>, _exponent: u16, _lights: usize) -> ErrorBounds {
-        ErrorBounds::EMPTY
+        ErrorBounds::new_zeroed()
     }
 
     /// Returns whether the method looks up highlights in tables while it draws. If it does not, because it uses the light of vertices alone, it

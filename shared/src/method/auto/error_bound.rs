@@ -94,16 +94,6 @@ fn fraction(x: u32, share: u32) -> u32 {
 }
 
 impl ErrorBounds {
-    /// Bounds that are not computed yet; all zeros.
-    pub const EMPTY: Self = Self {
-        lights: [LightBounds { diffuse: 0, specular: 0, narrowed: 0 }; MAX_LIGHTS],
-        ambient: 0,
-        threshold: 0,
-        exponent: 0,
-        part: 0,
-        may_saturate: 0,
-    };
-
     /// Error bounds for a material of this `exponent` under `lights` lights.
     #[must_use]
     pub fn new(reflectance: LitMaterial<'_>, exponent: u16, lights: usize) -> Self {
@@ -577,7 +567,7 @@ mod tests {
     /// answers are no.
     #[test]
     fn brightest_materials_overflow_nothing() {
-        let mut reflectance = Reflectance::EMPTY;
+        let mut reflectance = Reflectance::new_zeroed();
         let bright = [2 << UNIT; 3];
         let material = Material { ambient: bright, diffuse: bright, specular: bright, exponent: 1024 };
         let light = Light { colour: bright, ..Light::new_zeroed() };
@@ -611,7 +601,7 @@ mod tests {
             let gain = |x: f64| [(x * f64::from(1 << UNIT)) as u16; 3];
             let shares = [0.2 + 0.2 * random.next(), 0.2 + 0.2 * random.next()];
             let material = Material { ambient: [0; 3], diffuse: gain(shares[0]), specular: gain(shares[1]), exponent };
-            let mut reflectance = Reflectance::EMPTY;
+            let mut reflectance = Reflectance::new_zeroed();
             let white = Light { colour: [1 << UNIT; 3], ..Light::new_zeroed() };
             reflectance.fill(
                 Channels::of::<Gray8>(),
