@@ -87,13 +87,16 @@ pub trait LitColours: ByRows {
     type Pixel: Pixel;
 
     /// Whether a level gives a colour, so that light without a highlight can be fitted and walked as one level.
-    const TABLED: bool;
+    const TABLED: bool = false;
 
     /// See [`PixelShader::TRANSPARENT`](crate::raster::pixel_shader::PixelShader::TRANSPARENT).
     const TRANSPARENT: bool = true;
 
-    /// The diffuse level at cosine 1, Q9.7: the unit in which diffuse light is walked.
-    fn diffuse(&self) -> u16;
+    /// The diffuse level at cosine 1, Q9.7: the unit in which diffuse light is walked. Unless colours are tabled, it is half of the walked range, so
+    /// that cosines and their overshoots fit.
+    fn diffuse(&self) -> u16 {
+        1 << (FULL_BITS + LEVEL)
+    }
 
     /// Whether no diffuse level is above 255.
     #[inline]
@@ -232,7 +235,7 @@ pub struct Sum {
 
 /// Fraction bits of a cosine that is multiplied by a diffuse level.
 pub(crate) const FACTOR: u32 = CHANNEL - LEVEL;
-/// The diffuse level of [`OneLightRgb`] at cosine 1 is 2 to this power: half of the walked range, so that cosines and their overshoots fit.
+/// [`LitColours::diffuse`] is 2 to this power, if colours are not tabled.
 const FULL_BITS: u32 = 7;
 
 impl Sum {
@@ -299,9 +302,6 @@ impl<'a, C: Pixel> OneLightRgb<'a, C> {
 }
 
 impl<'a, C> OneLightRgb<'a, C> {
-    /// See [`LitColours::diffuse`].
-    const DIFFUSE: u16 = 1 << (FULL_BITS + LEVEL);
-
     /// The sums as kernels read them.
     #[inline(always)]
     fn in_kernels(&self) -> [&'a kernels::Sums; 2] {
@@ -331,12 +331,6 @@ impl<C: Pixel> ByRows for OneLightRgb<'_, C> {
 
 impl<C: Pixel> LitColours for OneLightRgb<'_, C> {
     type Pixel = C;
-
-    const TABLED: bool = false;
-
-    fn diffuse(&self) -> u16 {
-        Self::DIFFUSE
-    }
 }
 
 impl<C: Pixel> Shades<WithHighlight> for OneLightRgb<'_, C> {
@@ -398,12 +392,6 @@ impl<C: Pixel> ByRows for ColouredRgb<'_, C> {
 
 impl<C: Pixel> LitColours for ColouredRgb<'_, C> {
     type Pixel = C;
-
-    const TABLED: bool = false;
-
-    fn diffuse(&self) -> u16 {
-        OneLightRgb::<C>::DIFFUSE
-    }
 }
 
 impl<C: Pixel, L: MayHaveHighlight> Shades<Coloured<L>> for ColouredRgb<'_, C> {
@@ -522,12 +510,6 @@ impl<C: Pixel> ByRows for NeutralRgb<C> {
 
 impl<C: Pixel> LitColours for NeutralRgb<C> {
     type Pixel = C;
-
-    const TABLED: bool = false;
-
-    fn diffuse(&self) -> u16 {
-        OneLightRgb::<C>::DIFFUSE
-    }
 }
 
 impl<C: Pixel, L: Into<WithHighlight>> Shades<Coloured<L>> for NeutralRgb<C> {
@@ -570,12 +552,6 @@ impl<C: Pixel> ByRows for SummedColours<'_, C> {
 
 impl<C: Pixel> LitColours for SummedColours<'_, C> {
     type Pixel = C;
-
-    const TABLED: bool = false;
-
-    fn diffuse(&self) -> u16 {
-        OneLightRgb::<C>::DIFFUSE
-    }
 }
 
 impl<'a, C: Pixel> SummedColours<'a, C> {
@@ -671,13 +647,7 @@ impl<C: Pixel> ByRows for SummedRgb<'_, C> {
 impl<C: Pixel> LitColours for SummedRgb<'_, C> {
     type Pixel = C;
 
-    const TABLED: bool = false;
-
     const TRANSPARENT: bool = false;
-
-    fn diffuse(&self) -> u16 {
-        OneLightRgb::<C>::DIFFUSE
-    }
 }
 
 /// Adds a sum to the ambient light of a channel.
@@ -742,12 +712,6 @@ impl<C: Pixel> ByRows for TwoLightsRgb<'_, C> {
 
 impl<C: Pixel> LitColours for TwoLightsRgb<'_, C> {
     type Pixel = C;
-
-    const TABLED: bool = false;
-
-    fn diffuse(&self) -> u16 {
-        OneLightRgb::<C>::DIFFUSE
-    }
 }
 
 impl<C: Pixel, A: MayHaveHighlight, B: MayHaveHighlight> Shades<(A, B)> for TwoLightsRgb<'_, C> {

@@ -333,8 +333,6 @@ impl<C: Pixel> ByRows for Either<'_, C> {
 impl<C: Pixel> LitColours for Either<'_, C> {
     type Pixel = C;
 
-    const TABLED: bool = false;
-
     #[inline(always)]
     fn diffuse(&self) -> u16 {
         match self {
