@@ -22,7 +22,7 @@ use crate::{
         rsqrt::{HalfRsqrt, Root},
     },
     method::{
-        CornerCosines, Loops, Shading, Style, TriangleSetup,
+        CornerCosines, Shading, Style, TriangleSetup,
         cosines::{
             quotient,
             scale::{self, Lengths, STEEPEST, UnitSquare},
@@ -68,26 +68,12 @@ where
     shading.draw_lit(setup, |source| shading.constant_products(setup, source), common, model, canvas)
 }
 
-/// The loops under constant lights.
-pub(crate) struct Duff;
-
-impl Loops for Duff {
-    fn take(style: Style) -> bool {
-        style.lights > 0 && style.is_plain()
-    }
-
-    #[inline(always)]
-    fn draw<C: Pixel, const THREE: bool>(
-        setup: &TriangleSetup<'_>,
-        shading: &Shading<'_>,
-        tables: MaterialTables<'_, C>,
-        band: &mut Band<'_, C>,
-    ) -> Option<u32> {
-        draw(setup, || setup.corner_lights(), shading, tables, band)
-    }
+/// Whether there are loops for `style`.
+pub(crate) fn take(style: Style) -> bool {
+    style.lights > 0 && style.is_plain()
 }
 
-/// [`Loops::draw`] under one light with the cosines `corners`, or several.
+/// Draws `setup` by loops under one light with the cosines `corners`, or several.
 #[inline(always)]
 pub(crate) fn draw<C: Pixel>(
     setup: &TriangleSetup<'_>,

@@ -22,7 +22,7 @@ use crate::{
     method::{
         Facts, HighlightField, Loops, Method, Shading, Style, TriangleSetup, VertexLight,
         cosines::{
-            duff::{self, Duff},
+            duff,
             near::{self, Drawn},
             scale::Lengths,
             summed,
@@ -62,7 +62,7 @@ impl Loops for Phong {
     const TEXTURES: bool = true;
 
     fn take(style: Style) -> bool {
-        Duff::take(style) || near::take(style)
+        duff::take(style) || near::take(style)
     }
 
     #[inline(always)]
