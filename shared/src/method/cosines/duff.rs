@@ -25,7 +25,7 @@ use crate::{
         CornerCosines, Shading, Style, TriangleSetup,
         cosines::{
             quotient,
-            scale::{self, Lengths, STEEPEST, UnitSquare},
+            scale::{self, Lengths, STEEPEST},
             summed,
         },
         largest,
@@ -39,25 +39,24 @@ use crate::{
 
 /// Shades by linear numerators over a root, under constant lights.
 pub fn shade_constant(setup: &TriangleSetup<'_>, shading: &Shading<'_>, canvas: &mut dyn Canvas) -> u32 {
-    match tabled(setup).filter(|_| !is_steep(shading.exponent)) {
-        // The faster root is worth its code only where little else is done at a pixel.
-        Some(square) if setup.inv_depth().is_none() => {
-            let reflectance = shading.reflectance;
-            let fit = |source: &Source| {
-                // Both are linear, so that corners tell.
-                let [towards, half] = shading.constant_cosines(setup, source);
-                if !source.is_sky() && !setup.leaves_out_highlight(&reflectance, &half) {
-                    Lit::Fully(linear([towards, half]))
-                } else if !source.is_sky() && setup.leaves_out_light(&reflectance, &towards) {
-                    Lit::Nowhere
-                } else {
-                    Lit::Diffuse(linear([towards]))
-                }
-            };
-            shading.draw_lit_in_part(setup, fit, square, Tabled, canvas)
-        }
-        _ => draw_constant(setup, shading, square(setup, shading.exponent), Rooted, canvas),
+    let exponent = shading.exponent;
+    // The faster root is worth its code only where little else is done at a pixel.
+    if !scale::is_flat(setup) || is_steep(exponent) || setup.inv_depth().is_some() {
+        return draw_constant(setup, shading, square(setup, exponent), Rooted, canvas);
     }
+    let reflectance = shading.reflectance;
+    let fit = |source: &Source| {
+        // Both are linear, so that corners tell.
+        let [towards, half] = shading.constant_cosines(setup, source);
+        if !source.is_sky() && !setup.leaves_out_highlight(&reflectance, &half) {
+            Lit::Fully(linear([towards, half]))
+        } else if !source.is_sky() && setup.leaves_out_light(&reflectance, &towards) {
+            Lit::Nowhere
+        } else {
+            Lit::Diffuse(linear([towards]))
+        }
+    };
+    shading.draw_lit_in_part(setup, fit, scale::unit_square(setup), Tabled, canvas)
 }
 
 /// Shades by `model`. `common` and N·L and N·H of each light are interpolated; normals are not normalised, so these are linear under constant lights.
@@ -107,12 +106,6 @@ pub(crate) fn draw<C: Pixel>(
         };
     }
     quotient::draw(setup, &corners(), &lengths, tables, band)
-}
-
-/// The field |N|² minus [`crate::math::rsqrt::LEAST`], Q0.32, of normals of unit length; `None` if |N|² leaves the table of roots.
-#[inline(always)]
-pub(super) fn tabled(setup: &TriangleSetup<'_>) -> Option<UnitSquare> {
-    scale::is_flat(setup).then(|| scale::unit_square(setup))
 }
 
 /// |N|², Q2.30: exactly quadratic, and for steep highlights exact.

@@ -37,9 +37,6 @@ const HAVERSINE_BITS: u32 = HAVERSINE - 1;
 /// The largest exponent of a highlight that loops draw: [`crate::math::rsqrt::HALF_ERROR`] makes an error of 0.1 of 1/255 there.
 pub(super) const STEEPEST: u16 = 256;
 
-/// The squared lengths of normals of unit length at six nodes.
-pub(super) type UnitSquare = Nodes<6, 1, HAVERSINE_BITS>;
-
 /// The lengths of normals over a triangle.
 #[derive(Clone, Copy)]
 pub(super) struct Lengths {
@@ -57,7 +54,7 @@ pub(super) fn is_flat(setup: &TriangleSetup<'_>) -> bool {
 
 /// The field |N|² minus [`LEAST`], Q0.32, of normals of unit length at the corners.
 #[inline(always)]
-pub(super) fn unit_square(setup: &TriangleSetup<'_>) -> UnitSquare {
+pub(super) fn unit_square(setup: &TriangleSetup<'_>) -> Nodes<6, 1, HAVERSINE_BITS> {
     let [ab, bc, ca] = setup.edges(setup.triangle.haversine);
     let nodes = [0, 0, 0, -i32::from(ab), -i32::from(bc), -i32::from(ca)];
     Nodes::new([nodes], 32 - HAVERSINE).biased([0u32.wrapping_sub(LEAST) as i32])
@@ -124,9 +121,7 @@ impl Lengths {
             _ => unit_square(setup).fit(setup.gradients),
         }
     }
-}
 
-impl Lengths {
     /// [`Self::square`] in a function of its own.
     #[inline(never)]
     pub(super) fn square_apart(&self, setup: &TriangleSetup<'_>) -> Quadric<1> {
