@@ -35,7 +35,7 @@ pub(super) trait AtPixel<V>: Copy {
 }
 
 /// A light that a method makes of its values `V` at a pixel, and of `M`, which all lights have in common there.
-pub(super) trait FromValues<M, V> {
+pub(super) trait FromValues<M, V>: Copy {
     /// Number of the loop, see [`PixelShader::ID`].
     const ID: u8 = 0;
 
@@ -60,19 +60,12 @@ impl<M, L: FromValues<M, V>, V, S: SurfaceColour> FromValues<M, (V, S)> for Colo
 }
 
 /// Light `L` that a method computes at the pixel, in the colours of a material.
+#[derive(Clone, Copy)]
 pub(super) struct LitShader<T, K, L> {
     colours: T,
     at: K,
     light: PhantomData<L>,
 }
-
-impl<T: Copy, K: Copy, L> Clone for LitShader<T, K, L> {
-    fn clone(&self) -> Self {
-        *self
-    }
-}
-
-impl<T: Copy, K: Copy, L> Copy for LitShader<T, K, L> {}
 
 impl<T, K> LitShader<T, K, ()> {
     /// A shader for lights with highlights where `L` is [`WithHighlight`](crate::lighting::constant_lights::WithHighlight), and for lights without
@@ -82,7 +75,7 @@ impl<T, K> LitShader<T, K, ()> {
     }
 }
 
-impl<T: ByRows, K: Copy, L> ByRows for LitShader<T, K, L> {
+impl<T: ByRows, K: Copy, L: Copy> ByRows for LitShader<T, K, L> {
     fn step_row(&mut self) {
         self.colours.step_row();
     }

@@ -128,6 +128,7 @@ impl FromValues<(QuotientLookup<'_>, HalfReciprocal), ([u32; 1], [u32; 1])> for 
 
 /// A light whose highlight is looked up before the diffuse level is computed. By measurement, loops of two lights have more registers then, and loops
 /// of one light fewer.
+#[derive(Clone, Copy)]
 struct HighlightFirst(WithHighlight);
 
 impl From<HighlightFirst> for WithHighlight {
