@@ -150,11 +150,6 @@ impl Style {
     pub(crate) fn is_plain(self) -> bool {
         !self.by_canvas
     }
-
-    /// Whether loops for one constant light, or for two where corners have no colours, can draw it.
-    pub(crate) fn has_one_light_or_two(self) -> bool {
-        self.is_plain() && (self.lights == 1 || self.lights == 2 && !self.is_coloured)
-    }
 }
 
 /// Loops of a method for some styles, compiled for each pixel format. All other styles are drawn by the general loop, through a [`Canvas`].

@@ -30,10 +30,10 @@ use crate::{
     },
     math::vector::zip,
     method::{
-        DrawTriangle, Facts, HighlightField, Loops, Method, RANGE, Shading, Style, TriangleSetup, VertexLight,
+        DrawTriangle, Facts, HighlightField, Loops, Method, Middles, RANGE, Shading, Style, TriangleSetup, VertexLight,
         auto::error_bound::ErrorBounds,
         channels,
-        cosines::{phong::Phong, sqrt6::SixCosines},
+        cosines::{phong::Phong, sqrt6},
         draw_uniform,
         levels::{gouraud, six_point::SixPoint},
         texture,
@@ -187,7 +187,7 @@ impl<const QUADRATICS: bool> Method for Auto<QUADRATICS> {
             (Choice::Quadratic, None) if QUADRATICS => {
                 shading.draw_channels::<6, RANGE>(setup, &six_under_two(setup, shading), [0; 3], canvas)
             }
-            (Choice::Cosines, _) if QUADRATICS => SixCosines::shade(setup, shading, canvas),
+            (Choice::Cosines, _) if QUADRATICS => sqrt6::shade_constant::<false>(setup, Middles::IN_SPACE, shading, canvas),
             (Choice::Quadratic | Choice::Cosines | Choice::Phong, _) => Phong.shade(setup, shading, canvas),
         }
     }
@@ -221,7 +221,7 @@ impl<const QUADRATICS: bool> Loops for Auto<QUADRATICS> {
             let parts = match choice {
                 Choice::Solid(_) => [half_way_parts(setup, &shading.reflectance); 3],
                 Choice::Linear(_) => gouraud::corner_parts(setup, shading),
-                Choice::Quadratic | Choice::Cosines | Choice::Phong => return by::<Phong, _>(setup, shading, tables, band),
+                Choice::Quadratic | Choice::Cosines | Choice::Phong => return by(Phong::draw::<C, false>, setup, shading, tables, band),
             };
             return texture::fill(setup, shading, &parts, tables, band);
         }
@@ -241,21 +241,21 @@ impl<const QUADRATICS: bool> Loops for Auto<QUADRATICS> {
             Choice::Quadratic if QUADRATICS && under_two => {
                 Some(shading.fill_three(setup, || six_under_two(setup, shading), 0, ByColumn, band))
             }
-            Choice::Quadratic if QUADRATICS => by::<SixPoint, _>(setup, shading, tables, band),
-            Choice::Cosines if QUADRATICS => by::<SixCosines, _>(setup, shading, tables, band),
-            Choice::Quadratic | Choice::Cosines | Choice::Phong => by::<Phong, _>(setup, shading, tables, band),
+            Choice::Quadratic if QUADRATICS => by(SixPoint::draw::<C, false>, setup, shading, tables, band),
+            Choice::Cosines if QUADRATICS => by(sqrt6::draw_any::<false, C>, setup, shading, tables, band),
+            Choice::Quadratic | Choice::Cosines | Choice::Phong => by(Phong::draw::<C, false>, setup, shading, tables, band),
         }
     }
 }
 
 /// Draws by the loops of another method. They are called by address, because the compiler would compile them again here.
 #[inline(always)]
-fn by<L: Loops, C: Pixel>(
+fn by<C: Pixel>(
+    draw: DrawTriangle<C>,
     setup: &TriangleSetup<'_>,
     shading: &Shading<'_>,
     tables: MaterialTables<'_, C>,
     band: &mut Band<'_, C>,
 ) -> Option<u32> {
-    let draw: DrawTriangle<C> = L::draw::<C, false>;
     black_box(draw)(setup, shading, tables, band)
 }

@@ -53,7 +53,8 @@ use crate::{
 const WITH_HIGHLIGHT: u8 = <WithHighlight as FromValues<DefectLookup<'_>, ([u32; 1], [u32; 1])>>::ID;
 const DIFFUSE_ONLY: u8 = <DiffuseOnly as FromValues<(), [u32; 1]>>::ID;
 
-/// Whether the quadratic goes through roots of N·H, as the table of highlights expects, or through N·H itself.
+/// Whether the quadratic goes through roots of N·H, or through N·H itself, for a method whose table of highlights is that of [`Highlight::Half`]. That is
+/// set up sooner and less accurate.
 type IsRoot = bool;
 
 /// One, Q2.30.
@@ -75,10 +76,6 @@ static FACTS: Facts = Facts {
 /// Six-point shading with a square root of N·H.
 pub struct Sqrt6;
 
-/// Six-point shading that interpolates N·H itself, for a method whose table of highlights is that of [`Highlight::Half`]. It is set up sooner than
-/// [`Sqrt6`] and less accurate.
-pub(crate) struct SixCosines;
-
 impl Method for Sqrt6 {
     fn facts(&self) -> &'static Facts {
         &FACTS
@@ -97,15 +94,13 @@ impl Method for Sqrt6 {
     }
 }
 
-impl SixCosines {
-    /// Shades the triangle `setup` under constant lights into `canvas`; returns the number of its pixels there.
-    pub(crate) fn shade(setup: &TriangleSetup<'_>, shading: &Shading<'_>, canvas: &mut dyn Canvas) -> u32 {
-        shade_constant::<false>(setup, Middles::IN_SPACE, shading, canvas)
-    }
-}
-
 /// [`Method::shade`] under constant lights, with the nodes `middles`.
-fn shade_constant<const ROOT: IsRoot>(setup: &TriangleSetup<'_>, middles: Middles, shading: &Shading<'_>, canvas: &mut dyn Canvas) -> u32 {
+pub(crate) fn shade_constant<const ROOT: IsRoot>(
+    setup: &TriangleSetup<'_>,
+    middles: Middles,
+    shading: &Shading<'_>,
+    canvas: &mut dyn Canvas,
+) -> u32 {
     let threshold = setup.highlight_threshold(&shading.reflectance);
     let fit = |source: &Source| {
         let [towards, half] = shading.lighting.directions(source, [0; 3]);
@@ -124,7 +119,7 @@ fn shade_constant<const ROOT: IsRoot>(setup: &TriangleSetup<'_>, middles: Middle
 
 impl Loops for Sqrt6 {
     fn take(style: Style) -> bool {
-        style.has_one_light_or_two()
+        style.is_plain() && (style.lights == 1 || style.lights == 2 && !style.is_coloured)
     }
 
     #[inline(always)]
@@ -138,25 +133,9 @@ impl Loops for Sqrt6 {
     }
 }
 
-impl Loops for SixCosines {
-    fn take(style: Style) -> bool {
-        style.has_one_light_or_two()
-    }
-
-    #[inline(always)]
-    fn draw<C: Pixel, const THREE: bool>(
-        setup: &TriangleSetup<'_>,
-        shading: &Shading<'_>,
-        tables: MaterialTables<'_, C>,
-        band: &mut Band<'_, C>,
-    ) -> Option<u32> {
-        draw_any::<false, C>(setup, shading, tables, band)
-    }
-}
-
 /// Draws under one light or two.
 #[inline(always)]
-fn draw_any<const ROOT: IsRoot, C: Pixel>(
+pub(crate) fn draw_any<const ROOT: IsRoot, C: Pixel>(
     setup: &TriangleSetup<'_>,
     shading: &Shading<'_>,
     tables: MaterialTables<'_, C>,
