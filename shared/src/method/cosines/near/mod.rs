@@ -175,9 +175,6 @@ fn draw_highlight<const LIGHT: bool, C: Pixel>(
 trait Left: Copy {
     /// What is left of a cosine, Q5.27, and a highlight at the squared distance |P|², which is walked as the table of reciprocal roots is indexed.
     fn of(&self, light: CosineAndHighlight, square: u32) -> CosineAndHighlight;
-
-    /// What is left of a cosine, Q5.27.
-    fn of_diffuse(&self, cosine: i32, square: u32) -> i32;
 }
 
 /// A light that is as strong everywhere, or a near viewer.
@@ -189,11 +186,6 @@ impl Left for Whole {
     fn of(&self, light: CosineAndHighlight, _: u32) -> CosineAndHighlight {
         light
     }
-
-    #[inline(always)]
-    fn of_diffuse(&self, cosine: i32, _: u32) -> i32 {
-        cosine
-    }
 }
 
 /// A light that has a range.
@@ -202,14 +194,6 @@ struct Ranged {
     nearness: CoarseNearness,
     /// The entry of the table of highlights where there is none.
     floor: u32,
-}
-
-impl Ranged {
-    /// The strength, Q2.30.
-    #[inline(always)]
-    fn strength(&self, square: u32) -> i32 {
-        self.nearness.strength(squared(square))
-    }
 }
 
 /// |P|², unsigned Q0.32, as it is walked, from the form in which the table of reciprocal roots is indexed.
@@ -223,14 +207,9 @@ fn squared(square: u32) -> u32 {
 impl Left for Ranged {
     #[inline(always)]
     fn of(&self, (cosine, highlight): CosineAndHighlight, square: u32) -> CosineAndHighlight {
-        let strength = self.strength(square);
+        let strength = self.nearness.strength(squared(square));
         let above = highlight.wrapping_sub(self.floor);
-        (upper(cosine, strength) << 2, self.floor + ((above * (strength as u32 >> 14)) >> 16))
-    }
-
-    #[inline(always)]
-    fn of_diffuse(&self, cosine: i32, square: u32) -> i32 {
-        upper(cosine, self.strength(square)) << 2
+        (upper(cosine, strength) << 2, self.floor + (above.wrapping_mul(strength as u32 >> 14) >> 16))
     }
 }
 
@@ -302,7 +281,9 @@ impl<W: Left> AtPixel<([u32; 1], ([u32; 1], [u32; 1]))> for Diffuse<'_, W> {
     #[inline(always)]
     fn at(&self, ([nn], ([pp], [np])): ([u32; 1], ([u32; 1], [u32; 1]))) -> ((), i32) {
         let np = upper(signed(np), self.lengths.rsqrt(pp) as i32);
-        ((), self.left.of_diffuse(upper(np << 3, self.lengths.rsqrt(nn) as i32), pp))
+        // There is no highlight, and what would be left of one is not computed.
+        let (cosine, _) = self.left.of((upper(np << 3, self.lengths.rsqrt(nn) as i32), 0), pp);
+        ((), cosine)
     }
 }
 
