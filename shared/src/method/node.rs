@@ -10,7 +10,7 @@ use crate::{
     },
     math::{
         rsqrt::{HalfRsqrt, LEAST, rsqrt_wide},
-        vector::{add, dot, map, normalise, wide, zip},
+        vector::{add, dot, map, normalise, sub, wide, zip},
     },
     method::{Middles, Shading, TriangleSetup, perspective},
     stream::record::Vertex,
@@ -326,6 +326,15 @@ impl TriangleSetup<'_> {
         let (a, b, c) = (wide(a.normal), wide(b.normal), wide(c.normal));
         (ab.max(bc).max(ca) != u16::MAX).then(|| [MeanNormal::new(a, b, ab), MeanNormal::new(b, c, bc), MeanNormal::new(c, a, ca)])
     }
+}
+
+/// The squared distance of the farthest of three vertices from `position` (Q7.25), Q14.48.
+pub(crate) fn farthest(vertices: [&Vertex; 3], position: [i32; 3]) -> u64 {
+    let [a, b, c] = map(vertices, |vertex| {
+        let half = map(sub(position, point(vertex.position)), |c| c >> 1);
+        dot(half, half) as u64
+    });
+    a.max(b).max(c)
 }
 
 /// Position, and sum of the ends' normals (Q3.14), at the middle of each edge between three vertices.

@@ -26,13 +26,13 @@ use crate::{
         albedo::{Albedo, Parts},
         facing::Facing,
         lights::{Source, Viewer, point},
-        shape::Shape,
     },
     math::vector::{dot, map, sub, zip},
     method::{
         Shading, TriangleSetup,
         auto::error_bound::{Curvature, Interval, MOST_LIGHT, of_product, rooted, share, times},
         largest_range,
+        node::farthest,
     },
     stream::record::Vertex,
 };
@@ -97,7 +97,8 @@ pub(super) fn choose(setup: &TriangleSetup<'_>, shading: &Shading<'_>) -> Option
             None => 0,
         };
         if let (Some((shape, _)), Some(near)) = (source.shape(), source.point()) {
-            let part = part_of_range(shape, near, vertices);
+            // The squared distance of the farthest corner as a part of the square of the range: above 0, at most 1, Q0.16.
+            let part = (shape.nearness(farthest(vertices, near)).part(1 << COSINE) >> (COSINE - 16)).saturating_add(1).min(1 << 16);
             towards += times(towards, times(part, share(3.5)) + times(rooted(part), share(1.86)));
         }
         let turn = normals + towards;
@@ -183,15 +184,6 @@ fn is_before(setup: &TriangleSetup<'_>, shading: &Shading<'_>, source: &Source) 
         (Viewer::Infinite(towards), Some([light, _]), _) => dot(towards, *light) >= 0,
         _ => false,
     }
-}
-
-/// The squared distance of the farthest corner from a light at `near`, Q7.25, as a part of the square of its range: above 0, at most 1, Q0.16.
-fn part_of_range(shape: &Shape, near: [i32; 3], vertices: [&Vertex; 3]) -> u32 {
-    let [a, b, c] = map(vertices, |vertex| {
-        let half = map(sub(near, point(vertex.position)), |c| c >> 1);
-        dot(half, half) as u64
-    });
-    (shape.nearness(a.max(b).max(c)).part(1 << COSINE) >> (COSINE - 16)).saturating_add(1).min(1 << 16)
 }
 
 /// The squared length of the longest edge, Q4.28.

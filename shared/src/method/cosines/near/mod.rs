@@ -19,7 +19,7 @@ use crate::{
     format::COSINE,
     lighting::{
         constant_lights::{DiffuseOnly, LitColours, OneLightRamp, OneLightRgb, Shades, WithHighlight, node},
-        lights::{Lighting, Viewer, point},
+        lights::{Lighting, Viewer},
         material_tables::MaterialTables,
         reflectance::Reflectance,
         shape::CoarseNearness,
@@ -27,7 +27,6 @@ use crate::{
     math::{
         highlight_lut::CosineLookup,
         rsqrt::{HalfRsqrt, LEAST},
-        vector::{dot, map, sub},
     },
     method::{
         CornerCosines, Shading, Style, TriangleSetup,
@@ -35,12 +34,11 @@ use crate::{
             lit::{AtPixel, FromValues, LitShader},
             scale::Lengths,
         },
-        node::is_steep,
+        node::{farthest, is_steep},
         products::signed,
     },
     pixel::{Pixel, by_rows::ByRows},
     raster::band::Band,
-    stream::record::Vertex,
 };
 use products::{DiffuseProducts, HALF, Products, half};
 
@@ -117,7 +115,10 @@ fn draw_by_near_light<C: Pixel>(
 ) -> Option<u32> {
     let [source] = shading.lighting.sources() else { return None };
     if let Some((shape, _)) = source.shape() {
-        let left = Ranged { nearness: shape.nearness(farthest(setup, position)).coarse()?, floor: tables.reflectance.highlights.floor() };
+        let left = Ranged {
+            nearness: shape.nearness(farthest(setup.vertices(), position)).coarse()?,
+            floor: tables.reflectance.highlights.floor(),
+        };
         return draw_weakened(setup, [position, towards], left, shading, tables, band);
     }
     draw_weakened(setup, [position, towards], Whole, shading, tables, band)
@@ -211,17 +212,6 @@ impl Left for Ranged {
         let above = highlight.wrapping_sub(self.floor);
         (upper(cosine, strength) << 2, self.floor + (above.wrapping_mul(strength as u32 >> 14) >> 16))
     }
-}
-
-/// The squared distance of the farthest corner from `position`, which |P|² counts as 1; Q14.48.
-fn farthest(setup: &TriangleSetup<'_>, position: [i32; 3]) -> u64 {
-    let half = |vertex: &Vertex| map(sub(position, point(vertex.position)), |c| c >> 1);
-    let square = |vertex| {
-        let way = half(vertex);
-        dot(way, way) as u64
-    };
-    let [a, b, c] = setup.vertices();
-    square(a).max(square(b)).max(square(c))
 }
 
 /// Values at the pixel are walked products. `LIGHT` tells whether the light is near and not the viewer.

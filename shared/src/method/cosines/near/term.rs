@@ -8,7 +8,7 @@
 //! less than 2^-13 of full light.
 
 use super::{
-    HALF, STEEPEST, farthest,
+    HALF, STEEPEST,
     products::{Products, along, half, is_before, is_visible, least, ways},
     squared,
 };
@@ -25,7 +25,7 @@ use crate::{
     math::{highlight_lut::CosineLookup, rsqrt::HalfRsqrt, vector::map},
     method::{
         Shading, TriangleSetup,
-        node::{coefficients, field_product},
+        node::{coefficients, farthest, field_product},
         products::{fitted, linear, quadratic, signed},
     },
 };
@@ -96,7 +96,7 @@ impl NearTerm {
         };
         let products = Products::new(setup, position, towards)?;
         if let Some((shape, axis)) = source.shape() {
-            let shape = shape.coarse(shape.nearness(farthest(setup, position)))?;
+            let shape = shape.coarse(shape.nearness(farthest(setup.vertices(), position)))?;
             if shape.strength(products.least_pp() << 2, || 1 << COSINE) == 0 {
                 return Some(false);
             }
