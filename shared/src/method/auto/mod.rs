@@ -28,7 +28,7 @@ use crate::{
         material_tables::MaterialTables,
         reflectance::{LitMaterial, Reflectance},
     },
-    math::vector::zip,
+    math::vector::{map, zip},
     method::{
         DrawTriangle, Facts, HighlightField, Loops, Method, Middles, RANGE, Shading, Style, TriangleSetup, VertexLight,
         auto::error_bound::ErrorBounds,
@@ -87,31 +87,22 @@ fn half_way_parts(setup: &TriangleSetup<'_>, reflectance: &Reflectance) -> Parts
     reflectance.reflected_parts(half_way(setup, 0, 0), half_way(setup, 2, 0) as u32)
 }
 
-/// [`middle`] from the levels at the corners.
+/// [`middle`] from the levels at the corners, not raised.
 #[inline(never)]
-fn middle_of_levels(setup: &TriangleSetup<'_>, shading: &Shading<'_>, uniform: Option<&Parts>, raises: [i32; 3]) -> [i32; 3] {
+fn middle_of_levels(setup: &TriangleSetup<'_>, shading: &Shading<'_>, uniform: Option<&Parts>) -> [i32; 3] {
     if let Some(&parts) = uniform {
-        let albedo = setup.albedos().map_or(Albedo::WHITE, Albedo::half_way);
-        return zip(albedo.lit(parts), raises, |level, raise| (level + raise).clamp(0, FULL));
+        return setup.albedos().map_or(Albedo::WHITE, Albedo::half_way).lit(parts);
     }
-    let [red, green, blue] = channels(corner_levels(setup, shading, None)).map(extremes);
-    let middle = |[least, most]: [i32; 2], raise: i32| (((least + most) >> 1) + raise).clamp(0, FULL);
-    zip([red, green, blue], raises, middle)
+    map(channels(corner_levels(setup, shading, None)).map(extremes), |[least, most]| (least + most) >> 1)
 }
 
 /// The means of the smallest and the largest level at the corners, raised.
 #[inline(never)]
 fn middle(setup: &TriangleSetup<'_>, shading: &Shading<'_>, uniform: Option<&Parts>, raises: [i32; 3]) -> [i32; 3] {
     let reflectance = shading.reflectance;
-    if reflectance.sums_lights() || !shading.lighting.is_constant() {
-        return middle_of_levels(setup, shading, uniform, raises);
-    }
-    if let Some(albedos) = setup.albedos() {
-        return zip(Albedo::half_way(albedos).lit(half_way_parts(setup, &reflectance)), raises, |level, raise| {
-            (level + raise).clamp(0, FULL)
-        });
-    }
     let levels = match (shading.vertices_have_cosines(), reflectance.three_channels()) {
+        _ if reflectance.sums_lights() || !shading.lighting.is_constant() => middle_of_levels(setup, shading, uniform),
+        _ if let Some(albedos) = setup.albedos() => Albedo::half_way(albedos).lit(half_way_parts(setup, &reflectance)),
         (false, _) if is_uniform(setup) => reflectance.two_lights(setup.corners[0].light),
         // Otherwise one colour is chosen under two lights only where no highlight can be seen.
         (false, _) => reflectance.two_lights([half_way(setup, 0, 0), i32::MIN, half_way(setup, 2, 0), i32::MIN]),
