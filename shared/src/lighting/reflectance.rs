@@ -86,8 +86,8 @@ pub struct Factors {
 impl Factors {
     /// Adds a reflection to the levels of a pixel, in Q10.22 less the bits of [`Reflectance::excess`].
     #[inline]
-    pub fn add(&self, levels: &mut [i32; 3], reflection: Reflection) {
-        *levels = zip(*levels, self.levels(reflection), i32::wrapping_add);
+    pub fn add(&self, levels: &mut [i32; 3], Reflection { diffuse, highlight }: Reflection) {
+        *levels = zip(*levels, self.at(Self::cosine(diffuse), highlight), i32::wrapping_add);
     }
 
     /// Adds diffuse light only.
@@ -102,11 +102,6 @@ impl Factors {
         (diffuse >> (PIXEL_COSINE - FACTOR)).clamp(0, (1 << FACTOR) - 1)
     }
 
-    #[inline]
-    fn levels(&self, Reflection { diffuse, highlight }: Reflection) -> [i32; 3] {
-        self.at(Self::cosine(diffuse), highlight)
-    }
-
     /// What the light adds at a cosine, Q1.15, and a highlight, unsigned Q0.16.
     #[inline]
     fn at(&self, cosine: i32, highlight: u32) -> [i32; 3] {
@@ -115,21 +110,15 @@ impl Factors {
         [level(dr, sr), level(dg, sg), level(db, sb)]
     }
 
-    /// Adds the diffuse light at a cosine, Q1.15, to levels.
-    #[inline]
-    pub(crate) fn add_diffuse_at(&self, levels: &mut [i32; 3], cosine: i32) {
-        *levels = self.add_at(*levels, cosine);
-    }
-
     /// Adds a highlight, unsigned Q0.16, to levels.
     #[inline]
-    pub(crate) fn add_highlight_at(&self, levels: &mut [i32; 3], highlight: u32) {
+    pub(crate) fn add_highlight(&self, levels: &mut [i32; 3], highlight: u32) {
         *levels = zip(*levels, self.specular, |level, factor| level.wrapping_add(factor.wrapping_mul(highlight as i32)));
     }
 
     /// Adds the diffuse light at a cosine, Q1.15, to levels.
     #[inline]
-    pub(super) fn add_at(&self, [r, g, b]: [i32; 3], cosine: i32) -> [i32; 3] {
+    pub(crate) fn add_at(&self, [r, g, b]: [i32; 3], cosine: i32) -> [i32; 3] {
         let ([dr, dg, db], level) = (self.diffuse, |level: i32, gain: i32| level.wrapping_add(gain.wrapping_mul(cosine)));
         [level(r, dr), level(g, dg), level(b, db)]
     }
@@ -275,7 +264,7 @@ impl Reflectance {
         let mut sums = self.ambient.map(|level| (level << (FACTOR - excess)) + (1 << (CHANNEL - 9 - excess)));
         for light in 0..lights.len() {
             let factors = self.factors(light);
-            let none = factors.levels(Reflection { diffuse: 0, highlight: self.highlights.floor() });
+            let none = factors.at(0, self.highlights.floor());
             sums = zip(sums, zip(factors.diffuse, none, |diffuse, none| (diffuse >> 1) - none), i32::wrapping_add);
         }
         self.ambient_sums = sums;
@@ -544,12 +533,6 @@ impl Reflectance {
     #[must_use]
     pub fn ambient_sums(&self) -> [i32; 3] {
         self.ambient_sums
-    }
-
-    /// Adds to `sums` what a table entry without a highlight adds for a light; [`Self::ambient_sums`] is less by this.
-    #[inline]
-    pub fn add_no_highlight(&self, factors: &Factors, sums: &mut [i32; 3]) {
-        factors.add(sums, Reflection { diffuse: 0, highlight: self.highlights.floor() });
     }
 
     /// Converts sums of all lights to intensities.

@@ -218,7 +218,7 @@ where
                         match &mut colour {
                             Some(colour) => {
                                 factors.add_diffuse(&mut levels[k % CHUNK], reflection.diffuse);
-                                factors.add(&mut colour.highlights[k % CHUNK], Reflection { diffuse: 0, ..reflection });
+                                factors.add_highlight(&mut colour.highlights[k % CHUNK], reflection.highlight);
                             }
                             None => factors.add(&mut levels[k % CHUNK], reflection),
                         }
@@ -397,6 +397,8 @@ impl Shading<'_> {
         let reflectance = self.reflectance;
         // Renderers refuse methods that look up highlights if there is no table.
         let Some(lut) = reflectance.table().map(HighlightLut::by_cosine) else { return 0 };
+        // What a table entry without a highlight adds; the sums are less by this.
+        let floor = reflectance.highlights.floor();
         let mut ambient = reflectance.ambient_sums();
         let mut pure = ambient;
         let (mut lights, mut diffuse) = (heapless::Vec::<_, MAX_LIGHTS>::new(), heapless::Vec::<_, MAX_LIGHTS>::new());
@@ -404,7 +406,7 @@ impl Shading<'_> {
         for (light, source) in self.lighting.sources().iter().enumerate() {
             let factors = reflectance.factors(light);
             if VERTEX_COLOURS {
-                reflectance.add_no_highlight(&factors, &mut pure);
+                factors.add_highlight(&mut pure, floor);
             }
             let changes = [(); SHAPES].map(|()| Change::of(source, setup.vertices()));
             let is_dark = changes.iter().any(|change| matches!(change, Change::Dark));
@@ -420,7 +422,7 @@ impl Shading<'_> {
                 }
                 _ => without_light += 1,
             }
-            reflectance.add_no_highlight(&factors, &mut ambient);
+            factors.add_highlight(&mut ambient, floor);
         }
         setup.count_on(canvas, |counts| &mut counts.without_highlight, without_highlight);
         setup.count_on(canvas, |counts| &mut counts.without_light, without_light);

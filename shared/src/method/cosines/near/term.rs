@@ -209,7 +209,7 @@ impl NearTerm {
         if let Some(strength) = strength {
             cosine = cosine.wrapping_mul(strength >> (COSINE - FACTOR)) >> FACTOR;
         }
-        self.factors.add_diffuse_at(diffuse, cosine);
+        *diffuse = self.factors.add_at(*diffuse, cosine);
         if self.has_highlight {
             let (nf, fp, ff) = self.other.get();
             let ([nf], [fp]) = (nf.enter(column).value(), fp.enter(column).value());
@@ -224,7 +224,7 @@ impl NearTerm {
             if let Some(strength) = strength {
                 highlight = (highlight * (strength as u32 >> (COSINE - 16))) >> 16;
             }
-            self.factors.add_highlight_at(shine, highlight);
+            self.factors.add_highlight(shine, highlight);
         }
     }
 }
