@@ -58,7 +58,7 @@ impl<C: Pixel> Drawing<'_, C> {
             is_near: !(lighting.is_constant() || C::GRAY && self.pass.stage.is_coloured()),
             // Boards with displays of greys have little flash: no loops there.
             near_loops: !C::GRAY && near::have_loops(lighting, reflectance),
-            by_canvas: !self.colourist().suits_loops(),
+            is_plain: self.colourist().suits_loops(),
             perspective: *perspective,
             is_coloured: self.pass.stage.is_coloured(),
             has_texture: self.pass.painting.has_texture(),

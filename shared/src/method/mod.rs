@@ -135,21 +135,14 @@ pub(crate) struct Style {
     pub(crate) is_near: bool,
     /// Whether a light or the viewer is near, and methods with loops for that have loops for these lights.
     pub(crate) near_loops: bool,
-    /// Whether only a canvas can make the colours: by the curve of a display on three channels that are not light.
-    pub(crate) by_canvas: bool,
+    /// Whether loops can make the colours. Otherwise a canvas makes them, by the curve of a display on three channels that are not light.
+    pub(crate) is_plain: bool,
     /// Whether light is interpolated in perspective.
     pub(crate) perspective: bool,
     /// Whether the corners of triangles have colours.
     pub(crate) is_coloured: bool,
     /// Whether triangles have a texture.
     pub(crate) has_texture: bool,
-}
-
-impl Style {
-    /// Whether loops can make the colours.
-    pub(crate) fn is_plain(self) -> bool {
-        !self.by_canvas
-    }
 }
 
 /// Loops of a method for some styles, compiled for each pixel format. All other styles are drawn by the general loop, through a [`Canvas`].

@@ -189,7 +189,7 @@ impl<const QUADRATICS: bool> Loops for Auto<QUADRATICS> {
     const TEXTURES: bool = true;
 
     fn take(style: Style) -> bool {
-        Phong::take(style) || style.is_near && style.is_plain()
+        Phong::take(style) || style.is_near && style.is_plain
     }
 
     #[inline(always)]

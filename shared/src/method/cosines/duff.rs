@@ -69,7 +69,7 @@ where
 
 /// Whether there are loops for `style`.
 pub(crate) fn take(style: Style) -> bool {
-    style.lights > 0 && style.is_plain()
+    style.lights > 0 && style.is_plain
 }
 
 /// Draws `setup` by loops under one light with the cosines `corners`, or several.

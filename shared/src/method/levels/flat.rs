@@ -44,7 +44,7 @@ impl Loops for Flat {
     const TEXTURES: bool = true;
 
     fn take(style: Style) -> bool {
-        !style.by_canvas
+        style.is_plain
     }
 
     #[inline(always)]

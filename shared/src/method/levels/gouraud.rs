@@ -62,7 +62,7 @@ impl Loops for Gouraud {
     const TEXTURES: bool = true;
 
     fn take(style: Style) -> bool {
-        style.is_plain()
+        style.is_plain
     }
 
     #[inline(always)]

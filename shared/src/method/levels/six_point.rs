@@ -42,7 +42,7 @@ impl Loops for SixPoint {
     const TEXTURES: bool = true;
 
     fn take(style: Style) -> bool {
-        style.is_plain()
+        style.is_plain
     }
 
     #[inline(always)]

@@ -52,7 +52,7 @@ const STEEPEST: u16 = 128;
 
 /// Whether there are loops for `style`.
 pub(crate) fn take(style: Style) -> bool {
-    style.near_loops && style.is_plain() && !style.perspective
+    style.near_loops && style.is_plain && !style.perspective
 }
 
 /// Whether there are loops for a surface under these lights, of which one or the viewer is near.
