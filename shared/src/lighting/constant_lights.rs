@@ -226,7 +226,7 @@ pub type Sums = [Sum; 3];
 #[repr(C)]
 pub struct Sum {
     /// The level of ambient light plus a constant for rounding, Q10.22.
-    ambient: i32,
+    pub(super) ambient: i32,
     /// The level of diffuse light at cosine 1, Q9.7.
     diffuse: i32,
     /// The level of a whole highlight, Q9.6.
@@ -250,11 +250,6 @@ impl Sum {
         self.diffuse.wrapping_mul(cosine).wrapping_add(self.specular.wrapping_mul(highlight))
     }
 
-    /// The level of ambient light plus a constant for rounding, Q10.22.
-    pub(super) fn ambient(self) -> i32 {
-        self.ambient
-    }
-
     /// The sum on a surface that reflects a `share` of ambient and diffuse light, Q0.16. `ambient` is the level of ambient light alone.
     #[inline(always)]
     pub(super) fn painted(self, ambient: i32, share: i32) -> Self {
@@ -265,6 +260,11 @@ impl Sum {
             diffuse: ((self.diffuse as u32 * share as u32 + (1 << (SHARE - 1))) >> SHARE) as i32,
             ..self
         }
+    }
+
+    /// The sum as a channel of [`ColouredRgb`]. `ambient` is the level of ambient light alone.
+    pub(super) fn shares(&self, ambient: i32) -> [i32; 4] {
+        [self.ambient.wrapping_sub(ambient), ambient, self.diffuse, self.specular]
     }
 
     /// Adds `by` to all levels, Q10.22. A sum that overflows is not used.
@@ -299,17 +299,13 @@ impl<'a, C: Pixel> OneLightRgb<'a, C> {
     pub(crate) fn of([even, odd]: &'a [Sums; 2]) -> Self {
         Self(ByTurns::new([even, odd]))
     }
-}
 
-impl<'a, C> OneLightRgb<'a, C> {
     /// The sums as kernels read them.
     #[inline(always)]
     fn in_kernels(&self) -> [&'a kernels::Sums; 2] {
         self.0.both().map(|sums| transmute_ref!(sums))
     }
-}
 
-impl<C: Pixel> OneLightRgb<'_, C> {
     /// The colour of one cosine, Q1.15, and a highlight, unsigned Q0.16, on even rows and on odd ones.
     #[inline(always)]
     pub fn by_turns(&self, cosine: i32, highlight: u32) -> [C::Stored; 2] {
@@ -376,13 +372,6 @@ impl<'a, C: Pixel> ColouredRgb<'a, C> {
     }
 }
 
-impl Sum {
-    /// The sum as a channel of [`ColouredRgb`]. `ambient` is the level of ambient light alone.
-    pub(super) fn shares(&self, ambient: i32) -> [i32; 4] {
-        [self.ambient.wrapping_sub(ambient), ambient, self.diffuse, self.specular]
-    }
-}
-
 impl<C: Pixel> ByRows for ColouredRgb<'_, C> {
     #[inline(always)]
     fn step_row(&mut self) {
@@ -436,6 +425,26 @@ impl<C: Pixel> NeutralRgb<C> {
         let pure = |sum: &Sum, more: i32| sum.raised(more.wrapping_neg());
         is_same.then_some(Self { outer: pure(r, more_r), middle: pure(g, more_g), rounding: ByTurns::new([even, odd]) })
     }
+
+    /// The level and the colour of a surface with these shares, Q0.16, `raise` (Q9.7) higher; `None` if green is not lit as red and blue are.
+    #[inline(always)]
+    pub(super) fn tint(&self, [red, green, blue]: [i32; 3], raise: i32) -> Option<(TintLevel, Tint<C>)> {
+        let Self { outer, middle, rounding } = self;
+        // The largest levels of channels are as 1 - 2^-bits. Levels are rounded to the nearest, so that products with such a number of 8 bits differ by
+        // at most 256; ambient light is rounded twice, because half of the last place of cosines is added to it.
+        let [full, full_green] = [0, 1].map(|k| (1 << 8) - (1 << (8 - C::LEVELS[k])));
+        let is_alike = |outer: i32, middle: i32, slack: i32| (outer * full_green).wrapping_sub(middle * full).abs() <= slack;
+        let level = TintLevel { ambient: outer.ambient >> FACTOR, diffuse: outer.diffuse };
+        if !(is_alike(level.ambient, middle.ambient >> FACTOR, 1 << 9) && is_alike(outer.diffuse, middle.diffuse, 1 << 8)) {
+            return None;
+        }
+        let added = rounding.map(|rounding| {
+            let [r, g, _] = steps(C::LEVELS, rounding);
+            (r.wrapping_add(raise << FACTOR), g.wrapping_add(raise << FACTOR))
+        });
+        let green = if full == full_green { green } else { green * full_green / full };
+        Some((level, Tint { shares: [(red + 1) >> 1, (green + 1) >> 1, (blue + 1) >> 1], added }))
+    }
 }
 
 /// A surface of one colour under light without a hue: each channel is a share of one level.
@@ -459,28 +468,6 @@ impl TintLevel {
     #[inline(always)]
     pub(crate) fn at(self, cosine: i32) -> i32 {
         self.ambient + ((self.diffuse * (cosine.clamp(0, 1 << COSINE) >> (COSINE - FACTOR)) + (1 << (FACTOR - 1))) >> FACTOR)
-    }
-}
-
-impl<C: Pixel> NeutralRgb<C> {
-    /// The level and the colour of a surface with these shares, Q0.16, `raise` (Q9.7) higher; `None` if green is not lit as red and blue are.
-    #[inline(always)]
-    pub(super) fn tint(&self, [red, green, blue]: [i32; 3], raise: i32) -> Option<(TintLevel, Tint<C>)> {
-        let Self { outer, middle, rounding } = self;
-        // The largest levels of channels are as 1 - 2^-bits. Levels are rounded to the nearest, so that products with such a number of 8 bits differ by
-        // at most 256; ambient light is rounded twice, because half of the last place of cosines is added to it.
-        let [full, full_green] = [0, 1].map(|k| (1 << 8) - (1 << (8 - C::LEVELS[k])));
-        let is_alike = |outer: i32, middle: i32, slack: i32| (outer * full_green).wrapping_sub(middle * full).abs() <= slack;
-        let level = TintLevel { ambient: outer.ambient >> FACTOR, diffuse: outer.diffuse };
-        if !(is_alike(level.ambient, middle.ambient >> FACTOR, 1 << 9) && is_alike(outer.diffuse, middle.diffuse, 1 << 8)) {
-            return None;
-        }
-        let added = rounding.map(|rounding| {
-            let [r, g, _] = steps(C::LEVELS, rounding);
-            (r.wrapping_add(raise << FACTOR), g.wrapping_add(raise << FACTOR))
-        });
-        let green = if full == full_green { green } else { green * full_green / full };
-        Some((level, Tint { shares: [(red + 1) >> 1, (green + 1) >> 1, (blue + 1) >> 1], added }))
     }
 }
 
@@ -574,7 +561,7 @@ impl<'a, C: Pixel> SummedColours<'a, C> {
     #[inline(always)]
     pub(crate) fn shares(&self, pure: Option<&[i32; 3]>, [first, second]: [[i32; 3]; 2]) -> [Shares; 2] {
         self.ambient.both().map(|sums| {
-            let levels = map(*sums, Sum::ambient);
+            let levels = map(*sums, |sum| sum.ambient);
             let ambient = match pure {
                 Some(&pure) => zip(levels, pure, |level, pure| [level.wrapping_sub(pure), pure]),
                 None => map(levels, |level| [0, level]),

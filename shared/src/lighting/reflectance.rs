@@ -384,7 +384,7 @@ impl Reflectance {
     pub(crate) fn pure_ambient(&self) -> [i32; 3] {
         let ([[first, ..], _], less) = (&self.sums, self.summed_excess());
         let raised = zip(steps(self.depth, -self.quarter), self.depth, |step, depth| (half_step(depth) >> less) + (step >> less));
-        zip(map(*first, Sum::ambient), raised, i32::wrapping_sub)
+        zip(map(*first, |sum| sum.ambient), raised, i32::wrapping_sub)
     }
 
     /// A level, Q9.7, of sums as vertices hold them. Domain: [`Self::sums_lights`].

@@ -114,6 +114,13 @@ impl Shape {
         let share = unsigned_product(within as u32, self.slope) >> (COSINE + SLOPE - STRENGTH);
         (unsigned_product(near, square(share.min(1 << STRENGTH) as u32)) >> STRENGTH) as u32
     }
+
+    /// The shape for loops over a triangle with these squared distances; `None` if the light is too steep for them.
+    #[must_use]
+    pub(crate) fn coarse(&self, nearness: Nearness) -> Option<CoarseShape> {
+        let nearness = if self.inverse_square == 0 { CoarseNearness { mantissa: 0, shift: 0 } } else { nearness.coarse()? };
+        (self.slope <= STEEPEST).then_some(CoarseShape { nearness, edge: self.edge, slope: self.slope })
+    }
 }
 
 /// Fraction bits of [`Shape::slope`].
@@ -169,15 +176,6 @@ pub(crate) struct CoarseShape {
 
 /// The largest [`Shape::slope`] in loops: a cosine that errs by 4e-6 makes an error of 0.13 of 1/255.
 const STEEPEST: u32 = 64 << SLOPE;
-
-impl Shape {
-    /// The shape for loops over a triangle with these squared distances; `None` if the light is too steep for them.
-    #[must_use]
-    pub(crate) fn coarse(&self, nearness: Nearness) -> Option<CoarseShape> {
-        let nearness = if self.inverse_square == 0 { CoarseNearness { mantissa: 0, shift: 0 } } else { nearness.coarse()? };
-        (self.slope <= STEEPEST).then_some(CoarseShape { nearness, edge: self.edge, slope: self.slope })
-    }
-}
 
 impl CoarseShape {
     /// The strength of the light at the squared distance `square`, unsigned Q0.32, where `cosine` gives the cosine to the axis of the cone, Q2.30; Q2.30.

@@ -55,9 +55,7 @@ impl Shading<'_> {
         }
         self.reflectance.levels(self.lighting.incident(node.position, node.normal, None))
     }
-}
 
-impl Shading<'_> {
     /// The parts of light at `node`.
     pub(crate) fn parts(&self, node: &Node) -> Parts {
         self.reflectance.parts(self.lighting.incident(node.position, node.normal, None))

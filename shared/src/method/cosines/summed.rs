@@ -367,9 +367,7 @@ impl<C: Pixel, const NEAR: bool> OneByOne<'_, C, NEAR> {
             self.near.iter().for_each(|term| term.jump(rows));
         }
     }
-}
 
-impl<C: Pixel, const NEAR: bool> OneByOne<'_, C, NEAR> {
     /// The levels of ambient and diffuse light at a pixel, and the highlights of near lights.
     #[inline(always)]
     fn diffuse<const CH: usize>(&self, column: i32, sums: [u32; CH], half_reciprocal: &HalfReciprocal) -> [[i32; 3]; 2]
