@@ -80,9 +80,9 @@ fn curved<const QUADRATICS: bool>(setup: &TriangleSetup<'_>, shading: &Shading<'
         return Choice::Phong;
     }
     let style = if two_lights { 2 } else { usize::from(shading.reflectance.three_channels()) };
-    let Some(savings) = SAVINGS.get(style).filter(|_| QUADRATICS) else { return Choice::Phong };
+    let Some([quadratic, cosines]) = SAVINGS.get(style).filter(|_| QUADRATICS) else { return Choice::Phong };
     let extent = extent(setup);
-    let (quadratic, cosines) = (savings.quadratic.of(extent), savings.cosines.of(extent));
+    let (quadratic, cosines) = (quadratic.of(extent), cosines.of(extent));
     if quadratic.max(cosines) <= 0 {
         return Choice::Phong;
     }

@@ -49,21 +49,6 @@ pub struct LoopCosts {
     pub phong: Cost,
 }
 
-/// Savings of quadratics compared with Phong shading.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub(crate) struct Savings {
-    /// Saving by the quadratic through levels.
-    pub(crate) quadratic: Cost,
-    /// Saving by the quadratic through cosines.
-    pub(crate) cosines: Cost,
-}
-
-impl Savings {
-    const fn of(LoopCosts { quadratic, cosines, phong }: LoopCosts) -> Self {
-        Self { quadratic: phong.minus(quadratic).minus(JUDGE_QUADRATIC), cosines: phong.minus(cosines).minus(JUDGE_COSINES) }
-    }
-}
-
 /// Cost of finding out whether a quadratic through levels keeps to the budget, with a share of what is spent in vain.
 const JUDGE_QUADRATIC: Cost = Cost::new(700, 0, 0);
 /// Cost of finding out whether a quadratic through cosines keeps to the budget.
@@ -76,8 +61,11 @@ pub const COSTS: [LoopCosts; 3] = [
     LoopCosts { quadratic: Cost::new(3099, 121, 35), cosines: Cost::new(2590, 129, 86), phong: Cost::new(1719, 94, 101) },
 ];
 
-/// What quadratics save in each of these styles.
-pub(crate) static SAVINGS: [Savings; 3] = {
+/// What the quadratics through levels and through cosines save in each of these styles, compared with Phong shading.
+pub(crate) static SAVINGS: [[Cost; 2]; 3] = {
+    const fn of(LoopCosts { quadratic, cosines, phong }: LoopCosts) -> [Cost; 2] {
+        [phong.minus(quadratic).minus(JUDGE_QUADRATIC), phong.minus(cosines).minus(JUDGE_COSINES)]
+    }
     let [one, three, two_lights] = COSTS;
-    [Savings::of(one), Savings::of(three), Savings::of(two_lights)]
+    [of(one), of(three), of(two_lights)]
 };
