@@ -16,7 +16,7 @@ use crate::{
     method::{
         Shading, TriangleSetup,
         node::{Node, map_six},
-        products::{LinearNodes, QuadraticNodes, fitted, linear, quadratic, signed},
+        products::{QuadraticNodes, fitted, quadratic, signed},
         texture::{PlacePatch, Placed},
         weakening::{Change, Way},
     },
@@ -432,22 +432,15 @@ impl Shading<'_> {
         let mut room = [[[0; 3]; CHUNK]; COLOURED];
         let dark = zip(ambient, pure, i32::wrapping_sub);
         let mut rooms = room.iter_mut();
-        let colour = setup.albedos.map(|albedos| {
+        let colour = setup.albedos.map(|_| {
             let painter = match setup.texture_patch().first().copied().flatten() {
                 Some(place) => Painter::Texture(place),
-                None => Painter::Corners(shares(&setup.colours_at_nodes(albedos?)).map(&painted)),
+                None => Painter::Corners(shares(&setup.colours_at_nodes()?).map(&painted)),
             };
             Some(Coloured { painter, dark, highlights: rooms.next()? })
         });
         let ambient = if setup.albedos().is_some() { pure } else { ambient };
         setup.draw_spans(&mut ManyLights { reflectance, model, common, lights, diffuse, lut, ambient, colour, shared, levels }, canvas)
-    }
-
-    /// Returns the cosines N·L (normal and direction to the light) and N·H (normal and half vector between light and viewer) as fields that
-    /// are linear over the triangle, for a directional light and an infinitely distant viewer. N is interpolated without being normalised,
-    /// so the fields are exact.
-    pub fn constant_products(&self, setup: &TriangleSetup<'_>, source: &Source) -> LinearNodes<2> {
-        linear(self.constant_cosines(setup, source))
     }
 
     /// Returns the cosines N·L (normal and direction to the light) and N·H (normal and half vector between light and viewer) at the three

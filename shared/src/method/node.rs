@@ -183,10 +183,9 @@ impl TriangleSetup<'_> {
         self.six_colours_at(self.middles().shares())
     }
 
-    /// The colours at the nodes of a quadratic, where these are the colours of the corners.
-    pub(crate) fn colours_at_nodes(&self, &[a, b, c]: &[Albedo; 3]) -> [Albedo; 6] {
-        let [ab, bc, ca] = self.nodes_of_colours.first().copied().unwrap_or(Middles::IN_SPACE).shares();
-        [a, b, c, a.towards(b, ab), b.towards(c, bc), c.towards(a, ca)]
+    /// The colours at the nodes of a quadratic, if the corners have any.
+    pub(crate) fn colours_at_nodes(&self) -> Option<[Albedo; 6]> {
+        self.six_colours_at(self.nodes_of_colours.first().copied().unwrap_or(Middles::IN_SPACE).shares())
     }
 
     /// The colours at the corners and at these shares of the edges 0-1, 1-2 and 2-0, if the corners have any.

@@ -64,7 +64,7 @@ pub fn draw_constant<K: Field, F>(setup: &TriangleSetup<'_>, shading: &Shading<'
 where
     F: LightingModel<K::Value, [u32; 2]>,
 {
-    shading.draw_lit(setup, |source| shading.constant_products(setup, source), common, model, canvas)
+    shading.draw_lit(setup, |source| linear(shading.constant_cosines(setup, source)), common, model, canvas)
 }
 
 /// Whether there are loops for `style`.
