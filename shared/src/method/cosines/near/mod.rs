@@ -99,33 +99,21 @@ pub(crate) fn draw<C: Pixel>(
             Some(Drawn::Constantly([light, BEHIND]))
         }
         (Viewer::Infinite(towards), None, Some(position)) => {
-            draw_by_near_light(setup, [position, towards], shading, tables, band).map(Drawn::Pixels)
+            let pixels = if let Some((shape, _)) = source.shape() {
+                let nearness = shape.nearness(farthest(setup.vertices(), position)).coarse()?;
+                let left = Ranged { nearness, floor: tables.reflectance.highlights.floor() };
+                draw_by_near_light(setup, [position, towards], left, shading, tables, band)
+            } else {
+                draw_by_near_light(setup, [position, towards], Whole, shading, tables, band)
+            };
+            pixels.map(Drawn::Pixels)
         }
         _ => None,
     }
 }
 
-/// Draws `setup` under a light at `position`, Q7.25, where `towards` is the direction to the viewer, Q2.30.
+/// Draws `setup` under a light at `position`, Q7.25, of which this is `left`, where `towards` is the direction to the viewer, Q2.30.
 fn draw_by_near_light<C: Pixel>(
-    setup: &TriangleSetup<'_>,
-    [position, towards]: [[i32; 3]; 2],
-    shading: &Shading<'_>,
-    tables: MaterialTables<'_, C>,
-    band: &mut Band<'_, C>,
-) -> Option<u32> {
-    let [source] = shading.lighting.sources() else { return None };
-    if let Some((shape, _)) = source.shape() {
-        let left = Ranged {
-            nearness: shape.nearness(farthest(setup.vertices(), position)).coarse()?,
-            floor: tables.reflectance.highlights.floor(),
-        };
-        return draw_weakened(setup, [position, towards], left, shading, tables, band);
-    }
-    draw_weakened(setup, [position, towards], Whole, shading, tables, band)
-}
-
-/// [`draw_by_near_light`] with what its range leaves of it.
-fn draw_weakened<C: Pixel>(
     setup: &TriangleSetup<'_>,
     [position, towards]: [[i32; 3]; 2],
     left: impl Left,
