@@ -200,7 +200,7 @@ mod tests {
     use super::*;
     use crate::{
         format::{COSINE, RAMP, UNIT},
-        lighting::reflectance::Highlight,
+        math::highlight_lut::Highlight,
         pixel::{Channels, PixelFormat},
         stream::record::{Light, Material},
     };

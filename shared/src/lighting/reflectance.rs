@@ -14,7 +14,7 @@ use crate::{
         shape::STRENGTH,
     },
     math::{
-        highlight_lut::{Base, ENTRY, HighlightCurve, HighlightLut, square},
+        highlight_lut::{ENTRY, Highlight, HighlightCurve, HighlightLut, square},
         vector::{map, zip},
     },
     pixel::{Channels, gamma::Gamma, half_step, steps},
@@ -26,40 +26,6 @@ use zerocopy::{FromBytes, Immutable, IntoBytes, KnownLayout};
 
 /// [`Reflectance::lights`] where the diffuse light of all lights is summed.
 pub const SUMMED: u8 = 3;
-
-/// The quantity that is raised to the exponent `n` of a material. Each is scaled so that all methods give highlights of one width.
-#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
-pub enum Highlight {
-    /// The cosine of normal and half vector: (N·H)^n (Blinn 1977).
-    #[default]
-    Half,
-    /// The square of this cosine: ((N·H)²)^(n/2).
-    HalfSquared,
-    /// The square root z of this cosine: (z²)^n with z = sqrt(N·H).
-    Root,
-    /// The cosine of reflected light and viewer: (R·V)^(n/4) (Phong 1975). If L, N and V lie in a plane, the angle of R and V is twice the angle of N
-    /// and H.
-    Reflected,
-}
-
-impl Highlight {
-    /// The base that is raised to the exponent, as a function of the quantity by which a [`HighlightLut`] is indexed.
-    #[must_use]
-    pub const fn base(self) -> Base {
-        match self {
-            Self::Half => Base::Itself,
-            Self::HalfSquared => Base::Root,
-            Self::Root => Base::Square,
-            Self::Reflected => Base::FourthRoot,
-        }
-    }
-
-    /// Smallest exponent of a material. At this exponent the base is raised to 1.
-    #[must_use]
-    pub const fn least_exponent(self) -> u16 {
-        1 << self.base().roots()
-    }
-}
 
 /// Light levels that one light adds at cosine 1, for each channel, in Q9.7.
 #[derive(FromBytes, IntoBytes, Immutable, KnownLayout, Clone, Copy, Debug)]
@@ -259,7 +225,7 @@ impl Reflectance {
                 one.specular = [u16::MAX; 3];
             }
         }
-        self.highlights = HighlightCurve::new(material.exponent, highlight.base(), full, floor);
+        self.highlights = HighlightCurve::new(material.exponent, highlight, full, floor);
         // Intensities are rounded down, and so are cosines: half of their last place more.
         let mut sums = self.ambient.map(|level| (level << (FACTOR - excess)) + (1 << (CHANNEL - 9 - excess)));
         for light in 0..lights.len() {
@@ -268,10 +234,10 @@ impl Reflectance {
             sums = zip(sums, zip(factors.diffuse, none, |diffuse, none| (diffuse >> 1) - none), i32::wrapping_add);
         }
         self.ambient_sums = sums;
-        self.highlight_threshold = match highlight.base() {
+        self.highlight_threshold = match highlight {
             // Loops for greys have no code of their own without a highlight: they look up the level of ambient light.
             _ if is_matt && !(is_gray && holds_levels) => Self::NO_HIGHLIGHT,
-            Base::Square => square(self.highlights.highlight_threshold()),
+            Highlight::Root => square(self.highlights.highlight_threshold()),
             _ => self.highlights.highlight_threshold(),
         };
         let whole = largest(base).max(1);

@@ -29,7 +29,7 @@ pub(crate) struct QuotientLookup<'a> {
 }
 
 impl<'a> QuotientLookup<'a> {
-    /// Lookup in the table of `lut`. Domain: its base is not [`crate::math::highlight_lut::Base::Square`], so that nodes fit 26 bits.
+    /// Lookup in the table of `lut`. Domain: it is not one of [`crate::math::highlight_lut::Highlight::Root`], so that nodes fit 26 bits.
     #[must_use]
     pub(crate) fn new(lut: &'a HighlightLut) -> Self {
         Self { table: &lut.table, top: ((lut.scale << 7 << STEP) + (1 << (STEP - 1))) as i32, factor: (lut.scale << 16) as i32 }
@@ -109,7 +109,7 @@ impl<'a> DefectLookup<'a> {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::math::highlight_lut::{Base, HighlightCurve, NEAREST_ERROR};
+    use crate::math::highlight_lut::{Highlight, HighlightCurve, NEAREST_ERROR};
 
     /// Largest error of `at` against x^n: next to entries, and half way between two of them.
     fn error(n: u16, curve: &HighlightCurve, at: impl Fn(i32) -> u32) -> f64 {
@@ -126,7 +126,7 @@ mod tests {
     #[test]
     fn entries_are_the_nearest() {
         for n in (1..12).chain([20, 50, 127, 128, 500, 1023, 1024]) {
-            let (mut lut, curve) = (HighlightLut::EMPTY, HighlightCurve::new(n, Base::Itself, 1 << 16, 0));
+            let (mut lut, curve) = (HighlightLut::EMPTY, HighlightCurve::new(n, Highlight::Half, 1 << 16, 0));
             lut.fill(&curve);
             let quotients = QuotientLookup::new(&lut);
             for length in [1.0, 0.9, 0.77, 0.6, 0.5] {

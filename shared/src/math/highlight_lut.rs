@@ -26,7 +26,7 @@ pub struct HighlightCurve {
     n: u16,
     /// The value where the power is 0, unsigned Q0.16.
     floor: u16,
-    /// See [`Base`].
+    /// See [`Highlight`].
     base: u32,
 }
 
@@ -45,32 +45,41 @@ pub struct HighlightLut {
     pub(crate) table: [u16; SIZE + 1],
 }
 
-/// The base that is raised to the exponent, as a function of the table's argument x.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+/// The quantity x by which a table is looked up. A base that follows from it is raised to the exponent `n` of a material. Each is scaled so that all
+/// methods give highlights of one width.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 #[repr(u32)]
-pub enum Base {
-    /// The base is x.
-    Itself,
-    /// The base is the square root of x.
+pub enum Highlight {
+    /// The cosine of normal and half vector: (N·H)^n (Blinn 1977). The base is x.
+    #[default]
+    Half,
+    /// The square of this cosine: ((N·H)²)^(n/2). The base is the square root of x.
+    HalfSquared,
+    /// The cosine of reflected light and viewer: (R·V)^(n/4) (Phong 1975). The base is the fourth root of x. If L, N and V lie in a plane, the angle of R
+    /// and V is twice the angle of N and H.
+    Reflected,
+    /// The square root z of N·H: (z²)^n. The base is x². Below 1/2 it goes on as the tangent there: x - 1/4.
     Root,
-    /// The base is the fourth root of x.
-    FourthRoot,
-    /// The base is x². Below 1/2 it goes on as the tangent there: x - 1/4.
-    Square,
 }
 
-impl Base {
+impl Highlight {
     /// How often the square root is taken.
-    pub(crate) const fn roots(self) -> u32 {
+    const fn roots(self) -> u32 {
         match self {
-            Self::Itself | Self::Square => 0,
-            Self::Root => 1,
-            Self::FourthRoot => 2,
+            Self::Half | Self::Root => 0,
+            Self::HalfSquared => 1,
+            Self::Reflected => 2,
         }
+    }
+
+    /// Smallest exponent of a material. At this exponent the base is raised to 1.
+    #[must_use]
+    pub const fn least_exponent(self) -> u16 {
+        1 << self.roots()
     }
 }
 
-/// [`Base::Square`] of `x`, Q2.30, rounded down.
+/// The base of [`Highlight::Root`] for `x`, Q2.30, rounded down.
 ///
 /// Domain: `x` from -7/4 to just below √2, so that the result fits. Error: less than 1 unit of the last place (tests::squares).
 #[must_use]
@@ -123,12 +132,12 @@ pub const ENTRY: u32 = 16;
 impl HighlightCurve {
     /// The curve `floor + full base^n`.
     ///
-    /// Domain: `n` is 1 to 1024, at least 2 for [`Base::Root`] and 4 for [`Base::FourthRoot`]; `full` and `floor` are unsigned Q0.16, their
+    /// Domain: `n` is 1 to 1024, at least 2 for [`Highlight::HalfSquared`] and 4 for [`Highlight::Reflected`]; `full` and `floor` are unsigned Q0.16, their
     /// sum at most 1.
     #[must_use]
-    pub fn new(n: u16, base: Base, full: u32, floor: u16) -> Self {
+    pub fn new(n: u16, base: Highlight, full: u32, floor: u16) -> Self {
         let n4 = u32::from(n) << 2;
-        let scale = WHOLE.max(NonZeroU32::new(if base == Base::Square { n4 << 1 } else { n4 >> base.roots() }).unwrap_or(WHOLE));
+        let scale = WHOLE.max(NonZeroU32::new(if base == Highlight::Root { n4 << 1 } else { n4 >> base.roots() }).unwrap_or(WHOLE));
         Self { scale: scale.get(), full, n, floor, base: base as u32 }
     }
 
@@ -148,9 +157,9 @@ impl HighlightCurve {
         let x = (1u64 << 31).saturating_sub((i as u64 * step) >> 32);
         let roots = |roots| (0..roots).fold(x, |x, _| root(x << 31));
         let x = match self.base {
-            base if base == Base::Square as u32 => (square((x >> 1) as i32).max(0) as u64) << 1,
-            base if base == Base::Root as u32 => roots(Base::Root.roots()),
-            base if base == Base::FourthRoot as u32 => roots(Base::FourthRoot.roots()),
+            base if base == Highlight::Root as u32 => (square((x >> 1) as i32).max(0) as u64) << 1,
+            base if base == Highlight::HalfSquared as u32 => roots(Highlight::HalfSquared.roots()),
+            base if base == Highlight::Reflected as u32 => roots(Highlight::Reflected.roots()),
             _ => x,
         };
         u32::from(self.floor) + ((unsigned_product(power(x as u32, self.n), self.full) + (1 << 30)) >> 31) as u32
@@ -290,7 +299,7 @@ mod tests {
         // The largest errors are next to entries, and half way between two of them.
         let positions = || (0..SIZE + 12).flat_map(|i| [0.0, 0.498, 0.4999, 0.5001, 0.502, 0.999].map(|f| i as f64 + f));
         for n in (1..12).chain([20, 50, 127, 128, 500, 1023, 1024]) {
-            for (base, (full, floor)) in [Base::Itself, Base::Root, Base::FourthRoot, Base::Square]
+            for (base, (full, floor)) in [Highlight::Half, Highlight::HalfSquared, Highlight::Reflected, Highlight::Root]
                 .into_iter()
                 .flat_map(|base| [(1 << 16, 0), (40_000, 20_000)].map(|range| (base, range)))
             {
@@ -305,8 +314,8 @@ mod tests {
                     let cosine = (2f64.powi(30) - (step / SIZE as f64 * position).floor()) as i32;
                     let x = f64::from(cosine) / 2f64.powi(30);
                     let x = match base {
-                        Base::Square if x >= 0.5 => x * x,
-                        Base::Square => (x - 0.25).max(0.0),
+                        Highlight::Root if x >= 0.5 => x * x,
+                        Highlight::Root => (x - 0.25).max(0.0),
                         _ => x.max(0.0).powf(1.0 / f64::from(1 << base.roots())),
                     };
                     let exact = f64::from(full) * x.powi(n.into());

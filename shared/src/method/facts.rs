@@ -1,6 +1,6 @@
 //! Properties of shading methods.
 
-use crate::{lighting::reflectance::Highlight, setup::steepness::Steepness};
+use crate::{math::highlight_lut::Highlight, setup::steepness::Steepness};
 
 /// The properties of a shading method, which [`Method::facts`](crate::method::Method::facts) returns. For a method of your own, begin with
 /// [`Self::OWN`].

@@ -71,10 +71,10 @@ pub use {
         },
         lighting::{
             lights::{Lighting, Source, Viewer, cosine, point},
-            reflectance::{Highlight, LitMaterial, Reflectance, Reflection},
+            reflectance::{LitMaterial, Reflectance, Reflection},
             sampler::{IfTextured, Sampler},
         },
-        math::highlight_lut::CosineLookup,
+        math::highlight_lut::{CosineLookup, Highlight},
         raster::{
             canvas::{Shaded, SpanShader},
             triangle::ScreenTriangle,

@@ -476,11 +476,8 @@ mod tests {
     use super::*;
     use crate::{
         format::{LEVEL, UNIT},
-        lighting::{
-            lights::vertex_cosine,
-            reflectance::{Highlight, Reflectance},
-        },
-        math::vector::wide,
+        lighting::{lights::vertex_cosine, reflectance::Reflectance},
+        math::{highlight_lut::Highlight, vector::wide},
         method::auto::highlight_error::EXACT,
         pixel::Channels,
         stream::record::{Light, Material},

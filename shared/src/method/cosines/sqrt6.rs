@@ -26,9 +26,13 @@ use crate::{
         },
         lights::Source,
         material_tables::MaterialTables,
-        reflectance::{Highlight, Reflectance, Reflection},
+        reflectance::{Reflectance, Reflection},
     },
-    math::{highlight_lookup::DefectLookup, highlight_lut::CosineLookup, rsqrt::sqrt},
+    math::{
+        highlight_lookup::DefectLookup,
+        highlight_lut::{CosineLookup, Highlight},
+        rsqrt::sqrt,
+    },
     method::{
         CornerCosines, Facts, HighlightField, Loops, Method, Middles, RANGE, Shading, Style, TriangleSetup, VertexLight,
         cosines::{
