@@ -173,14 +173,12 @@ impl Lighting {
     }
 
     /// Whether a light has a cone, at whose edge it bends so much that nothing can be interpolated.
-    #[must_use]
     pub(crate) fn has_cone(&self) -> bool {
         self.sources().iter().any(|source| source.shape().is_some_and(|(shape, _)| shape.has_cone()))
     }
 
     /// Whether either all lights or the viewer are near, and the other is infinitely far, and the light has no other shape than a range. Domain: one
     /// light.
-    #[must_use]
     pub(crate) fn has_one_near(&self) -> bool {
         NEAR_LIGHTS && (self.directional != 0) == self.is_local() && !self.has_cone() && !self.sources().iter().any(Source::is_sky)
     }
@@ -220,7 +218,6 @@ impl Source {
 
     /// The range and the cone of a point light that has one, and the axis of the cone, Q2.30.
     #[inline]
-    #[must_use]
     pub(crate) fn shape(&self) -> Option<(&Shape, [i32; 3])> {
         let [_, axis] = self.vectors;
         self.shape.first().filter(|shape| !shape.is_even()).map(|shape| (shape, axis))

@@ -253,7 +253,6 @@ impl Reflectance {
 
     /// Whether there are three channels although neither the material nor the light has a hue: it is a mesh with colours of its own.
     #[inline]
-    #[must_use]
     pub(crate) fn is_neutral(&self) -> bool {
         self.three_channels == NEUTRAL
     }
@@ -283,7 +282,6 @@ impl Reflectance {
 
     /// The table of highlights among `tables`, if there is one for this material.
     #[inline]
-    #[must_use]
     pub(crate) fn table<'t>(&self, tables: &'t [HighlightLut]) -> Option<&'t HighlightLut> {
         tables.get(usize::from(self.table).wrapping_sub(1))
     }
@@ -297,7 +295,6 @@ impl Reflectance {
 
     /// Whether light is summed, see [`crate::lighting::summed`].
     #[inline]
-    #[must_use]
     pub(crate) fn sums_lights(&self) -> bool {
         SUMS_LIGHTS && self.lights == SUMMED
     }
@@ -340,13 +337,11 @@ impl Reflectance {
     /// Dither offset in three channels, a quarter of a step, with [`CHANNEL`] fraction bits, as if channels had eight bits. Even rows are lower by it
     /// and odd ones higher; 0 without dither.
     #[inline]
-    #[must_use]
     pub(crate) fn quarter(&self) -> i32 {
         self.quarter
     }
 
     /// The levels of ambient light in the sums of the first light, without what is added there for rounding and dither.
-    #[must_use]
     pub(crate) fn pure_ambient(&self) -> [i32; 3] {
         let ([[first, ..], _], less) = (&self.sums, self.summed_excess());
         let raised = zip(steps(self.depth, -self.quarter), self.depth, |step, depth| (half_step(depth) >> less) + (step >> less));
@@ -367,14 +362,12 @@ impl Reflectance {
 
     /// N·H, Q2.30, below which a highlight is left out: [`Self::highlight_threshold`] unless that is switched off.
     #[inline]
-    #[must_use]
     pub(crate) fn faintest(&self) -> i32 {
         if SKIPS && self.computes_all[0] != 0 && !self.is_matt() { i32::MIN } else { self.highlight_threshold }
     }
 
     /// N·L, Q2.30, up to which a light is left out: 0 unless that is switched off.
     #[inline]
-    #[must_use]
     pub(crate) fn darkest(&self) -> i32 {
         if SKIPS && self.computes_all[1] != 0 { i32::MIN } else { 0 }
     }
@@ -768,7 +761,6 @@ impl Reflection {
     /// The light of a source that has this part of its strength, up to 1 << [`STRENGTH`]. The diffuse light may have any format. A table of
     /// highlights holds `floor` where there is no highlight.
     #[inline]
-    #[must_use]
     pub(crate) fn weakened(self, strength: u32, floor: u32) -> Self {
         let diffuse = (product(self.diffuse, strength as i32) >> STRENGTH) as i32;
         let highlight = unsigned_product(self.highlight.saturating_sub(floor), strength) >> STRENGTH;
@@ -777,7 +769,6 @@ impl Reflection {
 
     /// The light of the sky about L, where this is that of a directional light: there is no highlight.
     #[inline]
-    #[must_use]
     pub(crate) fn of_sky(self) -> Self {
         Self { diffuse: part_of_sky(self.diffuse, PIXEL_COSINE), highlight: 0 }
     }

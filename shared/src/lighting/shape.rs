@@ -77,7 +77,6 @@ impl Shape {
 
     /// The most that the strength of the light changes where a squared distance changes by 1, or its product with the axis of the cone. `square` is a
     /// lower bound of squared distances, Q2.30, of which the largest is 1.
-    #[must_use]
     pub(crate) fn slope(&self, nearness: Nearness, square: u32) -> u64 {
         // The slope of (1 - d²/R²)², and of ((c - e)/(f - e))², where c is a product over a root.
         let range = (2 * u64::from(nearness.mantissa)) >> nearness.shift;
@@ -86,7 +85,6 @@ impl Shape {
     }
 
     /// The strength of the light at a point from which the light is `way` away, Q7.25, where its cone is about `axis`: 0 to 1 << [`STRENGTH`].
-    #[must_use]
     pub(super) fn strength(&self, axis: [i32; 3], way: [i32; 3]) -> u32 {
         let half = map(way, |c| c >> 1);
         let part = self.nearness(dot(half, half) as u64).part(1 << COSINE);
@@ -116,7 +114,6 @@ impl Shape {
     }
 
     /// The shape for loops over a triangle with these squared distances; `None` if the light is too steep for them.
-    #[must_use]
     pub(crate) fn coarse(&self, nearness: Nearness) -> Option<CoarseShape> {
         let nearness = if self.inverse_square == 0 { CoarseNearness { mantissa: 0, shift: 0 } } else { nearness.coarse()? };
         (self.slope <= STEEPEST).then_some(CoarseShape { nearness, edge: self.edge, slope: self.slope })
@@ -132,7 +129,6 @@ impl Nearness {
     /// The part of R² of the squared distance `square`, unsigned Q0.32, as Q.15, rounded down. `None` where parts may not fit a word: where a distance
     /// of 1 is more than 256 R.
     #[inline]
-    #[must_use]
     pub(crate) fn coarse(self) -> Option<CoarseNearness> {
         let shift = self.shift.checked_sub(COSINE - STRENGTH + 1)?;
         Some(CoarseNearness { mantissa: self.mantissa, shift: shift.min(31) })

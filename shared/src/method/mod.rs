@@ -267,7 +267,6 @@ impl TriangleSetup<'_> {
     /// Copies the set-up without edges and gradients, for functions that light the triangle. Since these are not passed on, the compiler keeps them
     /// in registers.
     #[inline]
-    #[must_use]
     pub(crate) fn for_lighting(&self) -> TriangleSetup<'_> {
         TriangleSetup { screen: &ScreenTriangle::NONE, gradients: &Gradients::NONE, ..*self }
     }
@@ -376,7 +375,6 @@ impl TriangleSetup<'_> {
     }
 
     /// Copies the set-up without perspective, for methods whose polynomials on the screen have nodes in perspective.
-    #[must_use]
     pub(crate) fn on_screen(&self) -> TriangleSetup<'_> {
         TriangleSetup { perspective: false, nodes_of_colours: [self.middles(); COLOURED], ..*self }
     }
@@ -430,7 +428,6 @@ impl TriangleSetup<'_> {
 
     /// The first light's [`VertexLight::Cosines`] at the corners.
     #[inline(always)]
-    #[must_use]
     pub(crate) fn corner_lights(&self) -> CornerCosines {
         let [a, b, c] = self.corners;
         [[a.light[0], b.light[0], c.light[0]], [a.light[1], b.light[1], c.light[1]]]
@@ -438,7 +435,6 @@ impl TriangleSetup<'_> {
 
     /// The [`VertexLight::Cosines`] of two lights at the corners. Domain: [`Reflectance::has_two_lights`], constant lights.
     #[inline(always)]
-    #[must_use]
     pub(crate) fn corners_of_two_lights(&self) -> [CornerCosines; 2] {
         let [a, b, c] = self.corners;
         [self.corner_lights(), [[a.light[2], b.light[2], c.light[2]], [a.light[3], b.light[3], c.light[3]]]]

@@ -32,7 +32,6 @@ impl Cost {
 
     /// Cost of a triangle of this number of rows and pixels, in instructions.
     #[inline]
-    #[must_use]
     pub(crate) fn of(self, [rows, pixels]: [i32; 2]) -> i32 {
         self.triangle + rows * self.row + pixels * self.pixel
     }

@@ -129,7 +129,6 @@ pub(crate) struct Curvature {
 impl Curvature {
     /// The curvature of a triangle; `None` if it is too large for any bound.
     #[inline]
-    #[must_use]
     pub(crate) fn of(triangle: &Triangle) -> Option<Self> {
         let short = (1u32 << NORMAL_LENGTH).wrapping_sub(triangle.min_normal_length.into());
         // 1/ρ - 1 = s + s²/(1 - s) for s = 1 - ρ, and 1/(1 - s) is at most 5/4 here.
@@ -297,7 +296,6 @@ impl ErrorBounds {
     ///
     /// Diffuse light is judged first, because that is soon done.
     #[inline(always)]
-    #[must_use]
     pub(crate) fn linear<const N: usize>(&self, budget: u32, curvature: Curvature, cosines: [CornerCosines; N]) -> Option<LinearBound> {
         let rounding = Interval { below: 2, above: 2 };
         let mut bounds = LinearBound { interval: rounding, brightest: self.ambient, has_highlight: false };
@@ -360,7 +358,6 @@ impl ErrorBounds {
 
     /// A bound of the quadratic through corners and midpoints of edges, in 1/255 of full intensity, Q9.7.
     #[inline(never)]
-    #[must_use]
     pub(crate) fn quadratic(&self, triangle: &Triangle, curvature: Curvature, cosines: &[CornerCosines]) -> u32 {
         let remainder = Curvature::remainder(triangle);
         let mut bound = 0u32;
@@ -386,7 +383,6 @@ impl ErrorBounds {
     /// A bound of the quadratics through cosines at corners and midpoints of edges, whose highlights are looked up at each pixel, in 1/255 of
     /// full intensity, Q9.7. What is clamped at the pixel is no farther off than what is not.
     #[inline(never)]
-    #[must_use]
     pub(crate) fn cosines(&self, triangle: &Triangle, curvature: Curvature, cosines: &[CornerCosines]) -> u32 {
         let remainder = Curvature::remainder(triangle);
         self.lights.iter().zip(cosines).fold(0u32, |bound, (light, [_, half])| {
@@ -399,7 +395,6 @@ impl ErrorBounds {
 
     /// Whether light may exceed 255 somewhere on the triangle: what is clamped at nodes is not clamped between them.
     #[inline(never)]
-    #[must_use]
     pub(crate) fn saturates(&self, curvature: Curvature, cosines: &[CornerCosines], reflectance: LitMaterial<'_>) -> bool {
         let mut sum = self.ambient as i32;
         for (light, [towards, half]) in self.lights.iter().zip(cosines) {
@@ -421,7 +416,6 @@ impl ErrorBounds {
 
     /// The diffuse level of a light for a difference of cosines, Q2.30; the level is Q9.7, rounded up.
     #[inline]
-    #[must_use]
     pub(crate) fn diffuse_level(&self, light: usize, cosine: i32) -> u32 {
         let diffuse = self.lights.get(light).map_or(0, |light| light.diffuse);
         ((diffuse * (cosine as u32 >> (COSINE - BOUND))) >> BOUND) + 2
@@ -429,7 +423,6 @@ impl ErrorBounds {
 
     /// The level of the first light's highlight for a difference of powers, unsigned Q0.16; the level is Q9.7, rounded up.
     #[inline]
-    #[must_use]
     pub(crate) fn highlight_level(&self, highlight: i32) -> u32 {
         let [LightBounds { specular, .. }, _] = &self.lights;
         ((specular * highlight as u32) >> 16) + 1
@@ -437,14 +430,12 @@ impl ErrorBounds {
 
     /// The brightest level of the first light at this cosine and highlight, Q9.7, rounded up.
     #[inline]
-    #[must_use]
     pub(crate) fn brightest(&self, cosine: i32, highlight: i32) -> i32 {
         (self.ambient + self.diffuse_level(0, cosine) + self.highlight_level(highlight)) as i32
     }
 
     /// Whether light may exceed 255 anywhere.
     #[inline]
-    #[must_use]
     pub(crate) fn may_saturate(&self) -> bool {
         self.may_saturate != 0
     }

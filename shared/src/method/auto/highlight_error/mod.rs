@@ -77,7 +77,6 @@ pub type LinearTable = [[Growth; 2]; COLUMNS];
 pub type Curved = [[[u16; 2]; COLUMNS]; ROWS + ROWS_BEHIND];
 
 /// The part of the table for an exponent.
-#[must_use]
 pub(crate) fn part(exponent: u16) -> u8 {
     LEAST_EXPONENTS.iter().rposition(|&least| exponent >= least).unwrap_or(0) as u8
 }
@@ -98,7 +97,6 @@ impl TablePlace {
     /// The place for triangles whose normals are shorter than 1 by up to `short`, where the highlight of an exponent is brightest at N·H =
     /// `cosine`; both Q1.15. Domain: `short` up to 1/5; n (1 - `cosine`) up to 8, beyond which highlights are not drawn.
     #[inline]
-    #[must_use]
     pub(crate) fn new(part: u8, short: u32, cosine: u32, exponent: u16) -> Self {
         let exponent = u32::from(exponent);
         let depth = (1u32 << NORMAL_LENGTH).saturating_sub(cosine).wrapping_mul(exponent);
@@ -114,7 +112,6 @@ impl TablePlace {
     /// Largest amounts by which linear interpolation of a highlight is too dark and too bright. The level at the highlight's peak is `specular`,
     /// Q9.7.
     #[inline]
-    #[must_use]
     pub(crate) fn linear(self, specular: u32) -> [u32; 2] {
         if self.size > 1 << (NORMAL_LENGTH + LINEAR_SIZE_BITS) {
             return [self.brightest(specular); 2];
@@ -142,7 +139,6 @@ impl TablePlace {
 
     /// The largest error of [`Kind::Quadratic`] for a highlight with the level `specular` at its peak, Q9.7.
     #[inline]
-    #[must_use]
     pub(crate) fn error_of_quadratic(self, specular: u32) -> u32 {
         match self.entry(Kind::Quadratic) {
             Some(entry) => ((specular * entry) >> SHARE) + 1,
@@ -153,7 +149,6 @@ impl TablePlace {
     /// The largest error of [`Kind::Cosines`] for a highlight with the level `specular` at its peak, Q9.7. `narrowed` is `specular` times
     /// [`USUAL_EXPONENT`] over the exponent. No error exceeds `specular`, because a power is between 0 and 1.
     #[inline]
-    #[must_use]
     pub(crate) fn error_of_cosines(self, specular: u32, narrowed: u32) -> u32 {
         match self.entry(Kind::Cosines) {
             Some(entry) => (unsigned_product(narrowed, entry) >> SHARE) as u32 + 1,
@@ -163,7 +158,6 @@ impl TablePlace {
 
     /// Upper bound for the level of the brightest highlight on the triangle: w^n is at most 2^-n(1 - w).
     #[inline]
-    #[must_use]
     pub(crate) fn brightest(self, specular: u32) -> u32 {
         (specular >> (self.column as u32 / COLUMNS_A_UNIT)) + 1
     }
@@ -171,7 +165,6 @@ impl TablePlace {
     /// Error of light at corners whose normals are longer or shorter than 1 by up to 2^-15, at an exponent above [`EXACT`]. It is this times the
     /// exponent times the brightest highlight on the triangle, w^n, which is at most 2^-n(1 - w).
     #[inline]
-    #[must_use]
     pub(crate) fn rounding(self, exponent: u16, specular: u32) -> u32 {
         if exponent <= EXACT {
             return 0;
