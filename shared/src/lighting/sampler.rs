@@ -54,12 +54,8 @@ impl<'f> Sampler<'f> {
     /// The texture of a mesh, and where its triangles lie in it. Pixel formats of greys take the luma of its colours.
     pub(crate) fn new(texture: MeshTexture<'f>, is_gray: bool) -> (Self, &'f [TextureCorners]) {
         let MeshTexture { palette, texels, size, has_holes, corners } = texture;
-        (Self { has_holes, ..Self::of(palette, texels, size, is_gray) }, corners)
-    }
-
-    fn of(palette: &'f [Colour], texels: &'f [u8], size: [u8; 2], is_gray: bool) -> Self {
         let [_, height] = size;
-        Self { palette, texels, rows: !(u32::MAX >> height), size, is_gray, has_holes: false }
+        (Self { palette, texels, rows: !(u32::MAX >> height), size, is_gray, has_holes }, corners)
     }
 
     /// A walked place with [`WALKED`] fraction bits.
@@ -112,7 +108,9 @@ mod tests {
 
     /// The texture of two by four texels with a palette of eight greys, which begins with texel 0 on the left of the first row.
     fn texture(palette: &[Colour; 8]) -> Sampler<'_> {
-        Sampler::of(palette, &[0, 1, 2, 3, 4, 5, 6, 7], [1, 2], false)
+        let texture = MeshTexture { palette, texels: &[0, 1, 2, 3, 4, 5, 6, 7], size: [1, 2], has_holes: false, corners: &[] };
+        let (sampler, _) = Sampler::new(texture, false);
+        sampler
     }
 
     #[test]
