@@ -72,7 +72,6 @@ pub struct Directions {
 
 impl Directions {
     /// Directions of the lights of a scene, at most [`ROOM`], where `world` maps the world to eye space.
-    #[must_use]
     pub fn new(lights: &[Light], world: &ModelView) -> Self {
         let mut vectors = [[[0; 3]; 2]; ROOM];
         for (direction, light) in vectors.iter_mut().zip(lights).filter(|(_, light)| light.kind != POINT) {
@@ -91,7 +90,6 @@ fn towards_eye(ModelView { rotation: [.., away], .. }: &ModelView) -> [i32; 3] {
 
 impl Lighting {
     /// The lights of a scene in its `world`.
-    #[must_use]
     pub fn new(camera: &Camera, lights: &[Light], world: &ModelView) -> Self {
         let mut lighting = Self::new_zeroed();
         lighting.place(camera, lights, &Directions::new(lights, world), world);
@@ -119,21 +117,18 @@ impl Lighting {
 
     /// All lights, in the order of the scene.
     #[inline]
-    #[must_use]
     pub fn sources(&self) -> &[Source] {
         self.sources.get(..self.count as usize).unwrap_or_default()
     }
 
     /// Position from which highlights are seen.
     #[inline]
-    #[must_use]
     pub fn viewer(&self) -> Viewer {
         if self.is_local() { Viewer::Local(self.viewer) } else { Viewer::Infinite(self.viewer) }
     }
 
     /// L and H, if there is just one light, it is directional, and the viewer infinitely far. N·L and N·H are then linear in N, which every method
     /// can use.
-    #[must_use]
     pub fn constant(&self) -> Option<&[[i32; 3]; 2]> {
         match self.sources() {
             _ if ALWAYS_CONSTANT => self.sources.first().map(|source| &source.vectors),
@@ -154,7 +149,6 @@ impl Lighting {
     }
 
     /// The unit vectors L and H of a light at `position` (Q7.25), Q2.30.
-    #[must_use]
     pub fn directions(&self, source: &Source, position: [i32; 3]) -> [[i32; 3]; 2] {
         match source.directional() {
             Some(directions) if !self.is_local() => *directions,
@@ -167,7 +161,6 @@ impl Lighting {
 
     /// Whether no light is a point light and the viewer is infinitely far, so that L and H are the same everywhere.
     #[inline]
-    #[must_use]
     pub fn is_constant(&self) -> bool {
         !NEAR_LIGHTS || self.directional & !self.is_local & 1 != 0
     }
@@ -225,28 +218,24 @@ impl Source {
 
     /// Whether the light comes from the sky.
     #[inline]
-    #[must_use]
     pub fn is_sky(&self) -> bool {
         LIGHT_SHAPES && self.kind == u32::from(SKY)
     }
 
     /// The smallest N·L, Q2.30, that counts: a surface with this N·L gets no light. It is 0, and -1 for light from the sky.
     #[inline]
-    #[must_use]
     pub fn darkest(&self) -> i32 {
         if self.is_sky() { -(1 << COSINE) } else { 0 }
     }
 
     /// The unit vectors L and H, Q2.30, of a directional light. H is unused under a local viewer.
     #[inline]
-    #[must_use]
     pub fn directional(&self) -> Option<&[[i32; 3]; 2]> {
         (!self.is_point()).then_some(&self.vectors)
     }
 
     /// The position, Q7.25, of a point light.
     #[inline]
-    #[must_use]
     pub fn point(&self) -> Option<[i32; 3]> {
         let [point, _] = self.vectors;
         self.is_point().then_some(point)
@@ -258,7 +247,6 @@ impl Source {
     }
 
     /// Unit vector from `position` towards the light, Q2.30.
-    #[must_use]
     pub fn towards(&self, position: [i32; 3]) -> [i32; 3] {
         let [vector, _] = self.vectors;
         if self.is_point() { normalise(sub(vector, position)) } else { vector }
@@ -267,7 +255,6 @@ impl Source {
 
 impl Viewer {
     /// Unit vector from `position` towards the viewer, Q2.30.
-    #[must_use]
     pub fn towards(&self, position: [i32; 3]) -> [i32; 3] {
         match *self {
             Self::Infinite(towards) => towards,
@@ -278,7 +265,6 @@ impl Viewer {
 
 /// Converts the position of a vertex to a point where light is computed, Q7.25.
 #[inline]
-#[must_use]
 pub fn point(position: [i16; 3]) -> [i32; 3] {
     let [x, y, z] = wide(position);
     [x << (POSITION - UNIT), y << (POSITION - UNIT), z << (POSITION - UNIT)]
@@ -288,7 +274,6 @@ pub fn point(position: [i16; 3]) -> [i32; 3] {
 ///
 /// Domain: vectors no longer than 1, Q2.30. Error: less than 1 unit of the last place.
 #[inline]
-#[must_use]
 pub fn cosine(a: [i32; 3], b: [i32; 3]) -> i32 {
     (dot(a, b) >> COSINE) as i32
 }
@@ -308,7 +293,6 @@ fn scaled_dot<const BITS: u32>(v: [i32; 3], unit: [i32; 3]) -> i32 {
 
 /// [`cosine`] of a vertex normal, [`crate::format::Unit`], and a unit vector. The result has the same bits and is computed faster.
 #[inline(always)]
-#[must_use]
 pub fn vertex_cosine(normal: [i32; 3], direction: [i32; 3]) -> i32 {
     scaled_dot::<UNIT>(normal, direction)
 }
@@ -331,14 +315,12 @@ pub struct MeanNormal {
 impl MeanNormal {
     /// Half-way between two vertex normals, with the factor of their edge in the stream.
     #[inline]
-    #[must_use]
     pub fn new(a: [i32; 3], b: [i32; 3], excess: u16) -> Self {
         Self { sum: add(a, b), excess }
     }
 
     /// A vertex normal, or the normal of a triangle's plane.
     #[inline]
-    #[must_use]
     pub fn at(normal: [i32; 3]) -> Self {
         Self::new(normal, normal, 0)
     }

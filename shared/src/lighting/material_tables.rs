@@ -67,7 +67,6 @@ pub fn fill_ramps<C: Pixel>(ramps: &mut C::Ramps, reflectance: &Reflectance, dit
 impl<'a, C: Pixel> MaterialTables<'a, C> {
     /// The table of colours with the gain of the only light, if the table of highlights holds levels.
     #[inline(always)]
-    #[must_use]
     pub fn one_light_ramp(&self) -> Option<OneLightRamp<'a, C>> {
         let (ramps, [_, diffuse]) = (ByTurns::new(self.ramps.squares()), self.reflectance.ramp);
         let floor = self.reflectance.highlights.floor();
@@ -77,14 +76,12 @@ impl<'a, C: Pixel> MaterialTables<'a, C> {
     /// The table of colours of a triangle in three channels under the only light, where that has no highlight; `None` unless
     /// [`Reflectance::has_ramp`].
     #[inline(always)]
-    #[must_use]
     pub fn diffuse_ramp(&self) -> Option<OneLightRamp<'a, C>> {
         let (ramps, [ambient, diffuse]) = (ByTurns::new(self.ramps.squares()), self.reflectance.ramp);
         self.reflectance.has_ramp().then(|| OneLightRamp { ramps, diffuse: diffuse as u16, floor: Reflectance::biased(ambient) })
     }
 
     /// The sums of three channels under the only light, if the material has three. Domain: [`Reflectance::lights`] is 1.
-    #[must_use]
     pub fn one_light_rgb(&self) -> Option<OneLightRgb<'a, C>> {
         self.three_channels().then_some(self.sums())
     }
@@ -135,7 +132,6 @@ impl<'a, C: Pixel> MaterialTables<'a, C> {
 
     /// The sums of three channels under two lights in the order of the stream, and in the other, if [`Reflectance::lights`] is 2.
     #[inline(always)]
-    #[must_use]
     pub fn two_lights_rgb(&self) -> Option<[TwoLightsRgb<'a, C>; 2]> {
         let [even, odd] = &self.reflectance.reflectance().sums;
         let forth = ByTurns::new([even.first_chunk()?, odd.first_chunk()?]);
@@ -152,7 +148,6 @@ impl<'a, C: Pixel> MaterialTables<'a, C> {
 
     /// The colour under one light from `[N·L, N·H]` (Q2.30), on even rows and on odd ones.
     #[inline(always)]
-    #[must_use]
     pub fn one_light(&self, cosines: [i32; 2]) -> [C::Stored; 2] {
         if self.three_channels() { self.one_light_mixed(cosines) } else { self.tint(self.reflectance.level(cosines)) }
     }
@@ -169,7 +164,6 @@ impl<'a, C: Pixel> MaterialTables<'a, C> {
 
     /// The colour of three levels, Q9.7, on even rows and on odd ones.
     #[inline(always)]
-    #[must_use]
     pub fn colour(&self, levels: [i32; 3]) -> [C::Stored; 2] {
         if !self.three_channels() {
             return self.tint(levels[0]);
@@ -188,7 +182,6 @@ impl<'a, C: Pixel> MaterialTables<'a, C> {
 
     /// The colour of a level, Q9.7, of a material of one channel, as its tables hold it for even rows and for odd ones.
     #[inline(always)]
-    #[must_use]
     pub fn tint(&self, level: i32) -> [C::Stored; 2] {
         let ([even, odd], level) = (self.ramps.squares(), Reflectance::biased(level) << (WALK - LEVEL));
         [C::entry(even, level, WALK), C::entry(odd, level, WALK)]

@@ -246,7 +246,6 @@ impl Reflectance {
 
     /// Whether three levels are walked instead of one, because the colours of the material are not multiples of one colour.
     #[inline]
-    #[must_use]
     pub fn three_channels(&self) -> bool {
         COLOURS && self.three_channels != 0
     }
@@ -260,14 +259,12 @@ impl Reflectance {
     /// Whether all light without a highlight under one light is a level of the table of colours. It is in one channel, and in three unless a level
     /// exceeds 255 or the pixel format is finer than the table.
     #[inline]
-    #[must_use]
     pub fn has_ramp(&self) -> bool {
         !COLOURS || self.has_ramp != 0
     }
 
     /// Whether the table of highlights holds levels: the ambient level plus the highlight of the only light.
     #[inline]
-    #[must_use]
     pub fn holds_levels(&self) -> bool {
         self.lights() == 1 && !self.three_channels()
     }
@@ -275,7 +272,6 @@ impl Reflectance {
     /// Number of lights, if it is one or two, the method has loops for them, and their levels fit their formats; [`SUMMED`] for other lights; otherwise
     /// 0.
     #[inline]
-    #[must_use]
     pub fn lights(&self) -> u8 {
         self.lights
     }
@@ -288,7 +284,6 @@ impl Reflectance {
 
     /// Whether there are two lights on three channels, and their sums fit a word.
     #[inline]
-    #[must_use]
     pub fn has_two_lights(&self) -> bool {
         LIGHTS && COLOURS && self.has_two_lights != 0
     }
@@ -305,20 +300,17 @@ impl Reflectance {
     /// Whether the material has no highlight under the lights of the scene, so that it needs no table. Greys whose table holds
     /// levels always need one.
     #[inline]
-    #[must_use]
     pub fn is_matt(&self) -> bool {
         self.highlight_threshold == Self::NO_HIGHLIGHT
     }
 
     /// Smallest N·H, Q2.30, whose highlight counts, see [`HighlightCurve::highlight_threshold`]; [`Self::NO_HIGHLIGHT`] if there is none.
-    #[must_use]
     pub fn highlight_threshold(&self) -> i32 {
         self.highlight_threshold
     }
 
     /// Whether the light of all lights fits a word as [`Sum`]s add it up.
     #[inline]
-    #[must_use]
     pub fn sums_fit(&self) -> bool {
         self.excess == 0
     }
@@ -374,13 +366,11 @@ impl Reflectance {
 
     /// The level of the table of colours without highlight at N·L (Q2.30) under one light, Q9.7. Domain: [`Self::has_ramp`].
     #[inline]
-    #[must_use]
     pub fn ramp_level(&self, cosine: i32) -> i32 {
         diffuse_level(self.ramp, cosine)
     }
 
     /// Rise of each channel if the level of the table of colours rises by `raise`, Q9.7. Domain: [`Self::has_ramp`].
-    #[must_use]
     pub fn ramp_rise(&self, raise: i32) -> [i32; 3] {
         let share = |gain: u16| (raise * i32::from(gain)).checked_div(self.ramp[1]).unwrap_or(0);
         self.gains[0].diffuse.map(share)
@@ -388,7 +378,6 @@ impl Reflectance {
 
     /// Levels of three channels under one light, Q9.7 in [0, 255], from N·L (Q2.30) and a highlight (unsigned Q0.16).
     #[inline]
-    #[must_use]
     pub fn reflection(&self, cosine: i32, highlight: u32) -> [i32; 3] {
         [self.channel(0, cosine, highlight), self.channel(1, cosine, highlight), self.channel(2, cosine, highlight)]
     }
@@ -419,7 +408,6 @@ impl Reflectance {
     /// The levels of the table of colours without highlight at six nodes with these cosines, under one light, not clamped, Q9.7. Domain:
     /// [`Self::has_ramp`].
     #[inline]
-    #[must_use]
     pub fn six_diffuse(&self, [a, b, c, ab, bc, ca]: [i32; 6]) -> [i32; 6] {
         let level = |cosine| diffuse_level(self.ramp, cosine);
         [level(a), level(b), level(c), level(ab), level(bc), level(ca)]
@@ -427,7 +415,6 @@ impl Reflectance {
 
     /// Levels as in [`Self::six_diffuse`], clamped to 255.
     #[inline]
-    #[must_use]
     pub fn six_diffuse_clamped(&self, cosines: [i32; 6]) -> [i32; 6] {
         let [ambient, diffuse] = self.ramp;
         if ambient + diffuse <= FULL {
@@ -440,7 +427,6 @@ impl Reflectance {
 
     /// The levels of a channel under one light, Q9.7 in [0, 255], at six nodes of these cosines and highlights (unsigned Q0.16).
     #[inline]
-    #[must_use]
     pub fn six(&self, channel: usize, [a, b, c, ab, bc, ca]: [i32; 6], [i, j, k, ij, jk, ki]: [u32; 6]) -> [i32; 6] {
         let level = |cosine, highlight| self.channel(channel, cosine, highlight);
         [level(a, i), level(b, j), level(c, k), level(ab, ij), level(bc, jk), level(ca, ki)]
@@ -460,7 +446,6 @@ impl Reflectance {
 
     /// The levels of ambient light, Q9.7.
     #[inline]
-    #[must_use]
     pub fn ambient(&self) -> [i32; 3] {
         self.ambient
     }
@@ -478,7 +463,6 @@ impl Reflectance {
 
     /// Factors of light number `light`.
     #[inline]
-    #[must_use]
     pub fn factors(&self, light: usize) -> Factors {
         let Gains { diffuse, specular } = self.gains.get(light).copied().unwrap_or(Gains::NONE);
         let excess = self.excess;
@@ -489,7 +473,6 @@ impl Reflectance {
 
     /// The sums to which [`Factors::add`] adds all lights: ambient light, minus what a table entry without a highlight would add for each light.
     #[inline]
-    #[must_use]
     pub fn ambient_sums(&self) -> [i32; 3] {
         self.ambient_sums
     }
@@ -533,7 +516,6 @@ impl Reflectance {
 
     /// An intensity in unsigned Q8.8 that is scaled to the depths of the pixel format, by the curve of a display.
     #[inline]
-    #[must_use]
     pub fn scaled(&self, intensity: Intensity, gamma: Option<&Gamma>) -> [u32; 3] {
         let intensity = intensity.map(|level| level.min(255 << 8));
         let [level, ..] = intensity;
@@ -565,28 +547,24 @@ impl Deref for LitMaterial<'_> {
 impl<'f> LitMaterial<'f> {
     /// A material and its table, which has been filled with the curve of its highlights.
     #[inline]
-    #[must_use]
     pub fn new(reflectance: &'f Reflectance, table: Option<&'f HighlightLut>) -> Self {
         Self { reflectance, table }
     }
 
     /// The material without its table.
     #[inline]
-    #[must_use]
     pub fn reflectance(self) -> &'f Reflectance {
         self.reflectance
     }
 
     /// The table of highlights. Renderers refuse methods that need one if there is none.
     #[inline]
-    #[must_use]
     pub fn table(self) -> Option<&'f HighlightLut> {
         self.table
     }
 
     /// The highlight at N·H (Q2.30), unsigned Q0.16.
     #[inline]
-    #[must_use]
     pub fn highlight_at(self, half: i32) -> u32 {
         match self.table {
             Some(table) => table.at(half),
@@ -596,7 +574,6 @@ impl<'f> LitMaterial<'f> {
 
     /// The level of a material of one channel under one light, Q9.7 in [0, 255], from `[N·L, N·H]` (Q2.30).
     #[inline(never)]
-    #[must_use]
     pub fn level(self, [diffuse, half]: [i32; 2]) -> i32 {
         let [gains, ..] = &self.gains;
         let light = reflected((gains.diffuse[0], gains.specular[0]), diffuse, self.highlight(half));
@@ -605,14 +582,12 @@ impl<'f> LitMaterial<'f> {
 
     /// The highlight at N·H (Q2.30), unsigned Q0.16, 0 where none can be seen.
     #[inline]
-    #[must_use]
     pub fn highlight(self, half: i32) -> u32 {
         if half < self.highlight_threshold { 0 } else { self.highlight_at(half) }
     }
 
     /// The diffuse level at cosine 1 and the level of a whole highlight of a light, Q9.7, each in the channel where it is largest.
     #[inline]
-    #[must_use]
     pub fn largest_gains(self, light: usize) -> [u32; 2] {
         let Gains { diffuse, specular } = self.gains.get(light).copied().unwrap_or(Gains::NONE);
         // Written out: `map` of arrays goes through memory at opt-level "s".
@@ -622,14 +597,12 @@ impl<'f> LitMaterial<'f> {
 
     /// Levels under one light, Q9.7 in [0, 255], from `[N·L, N·H]` (Q2.30).
     #[inline]
-    #[must_use]
     pub fn one_light(self, cosines: [i32; 2]) -> [i32; 3] {
         if self.three_channels() { self.levels(core::iter::once(cosines.into())) } else { [self.level(cosines); 3] }
     }
 
     /// Levels at a point, Q9.7 in [0, 255], from what falls on it from each light.
     #[inline]
-    #[must_use]
     pub fn levels(self, incident: impl Iterator<Item = Incident>) -> [i32; 3] {
         let mut levels = self.ambient;
         for (gains, Incident { towards, half, strength }) in self.gains.iter().zip(incident) {
@@ -680,7 +653,6 @@ impl<'f> LitMaterial<'f> {
 
     /// Levels under constant lights, Q9.7 in [0, 255], of a unit normal.
     #[inline(never)]
-    #[must_use]
     pub fn constant_levels<N: UnitNormal>(self, sources: &[Source], normal: &N) -> [i32; 3] {
         if sources.len() > 2 || self.excess != 0 {
             return self.many_constant_levels(sources, normal);
@@ -698,7 +670,6 @@ impl<'f> LitMaterial<'f> {
 
     /// Levels under two lights, Q9.7 in [0, 255], from N·L and N·H (Q2.30) of one, then of the other. Domain: [`Self::has_two_lights`].
     #[inline]
-    #[must_use]
     pub fn two_lights(self, [towards, half, other, other_half]: [i32; 4]) -> [i32; 3] {
         let lit = |towards, half| [node_cosine(towards), self.highlight(half) as i32];
         self.two_sums([lit(towards, half), lit(other, other_half)])

@@ -70,7 +70,6 @@ impl Shape {
 
     /// Whether the light has a cone.
     #[inline]
-    #[must_use]
     pub fn has_cone(&self) -> bool {
         self.slope != 0
     }
@@ -92,7 +91,6 @@ impl Shape {
     }
 
     /// Squared distances as parts of R², where a distance of 1 is the root of `square`, Q14.48.
-    #[must_use]
     pub fn nearness(&self, square: u64) -> Nearness {
         let (mantissa, exponent) = times(scaled(square, SQUARE), (self.inverse_square, self.exponent));
         Nearness { mantissa, shift: exponent.clamp(0, 63) as u32 }
@@ -101,7 +99,6 @@ impl Shape {
     /// The strength of the light at a point whose squared distance is `part` of R², Q2.30, and where `cosine` gives the cosine to the axis of the
     /// cone, Q2.30.
     #[inline]
-    #[must_use]
     pub fn weaker(&self, part: u32, cosine: impl FnOnce() -> i32) -> u32 {
         let square = |share: u32| (unsigned_product(share, share) >> STRENGTH) as u32;
         let near = square((1u32 << COSINE).saturating_sub(part) >> (COSINE - STRENGTH));
@@ -136,7 +133,6 @@ impl Nearness {
 
     /// The part of R², Q2.30, of the squared distance `square`, Q2.30 in [0, 2); it saturates.
     #[inline]
-    #[must_use]
     pub fn part(self, square: u32) -> u32 {
         let part = unsigned_product(square, self.mantissa) >> self.shift;
         if part >> 32 == 0 { part as u32 } else { u32::MAX }

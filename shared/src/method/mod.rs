@@ -343,7 +343,6 @@ impl TriangleSetup<'_> {
     /// Whether the interpolated normal may be shorter than 1/2, where the table of roots and every fit of 1/|N| end.
     #[doc(hidden)]
     #[inline]
-    #[must_use]
     pub fn is_curved(&self) -> bool {
         self.triangle.min_normal_length < 1 << (NORMAL_LENGTH - 1)
     }
@@ -624,7 +623,6 @@ impl Shading<'_> {
     /// infinitely distant.
     #[doc(hidden)]
     #[inline]
-    #[must_use]
     pub fn vertices_have_cosines(&self) -> bool {
         ALWAYS_CONSTANT || self.constant.is_some()
     }
@@ -725,7 +723,6 @@ fn intensity(walked: u32) -> i32 {
 
 /// Converts levels in Q9.7 to intensities of at most 255.
 #[inline]
-#[must_use]
 #[doc(hidden)]
 pub fn of_levels(levels: [i32; 3]) -> Intensity {
     levels.map(|level| level.max(0) << 1)

@@ -37,7 +37,6 @@ impl Node {
 
 /// Whether highlights of this exponent are so steep that rounding of the stream's edge constants to 16 bits would show: an error of 2^-17 in a cosine
 /// is 0.1 of 1/255 at the exponent 64, and grows with the exponent. The constants are then computed from the normals.
-#[must_use]
 pub fn is_steep(exponent: u16) -> bool {
     exponent > 64
 }

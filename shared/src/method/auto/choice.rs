@@ -26,7 +26,6 @@ use crate::{
 };
 
 /// Chooses how to draw a triangle.
-#[must_use]
 pub fn choose<const QUADRATICS: bool>(setup: &TriangleSetup<'_>, shading: &Shading<'_>) -> Choice {
     choose_lit::<QUADRATICS>(setup, shading, uniform_parts(setup, shading).as_ref())
 }

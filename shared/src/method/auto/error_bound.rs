@@ -95,7 +95,6 @@ fn fraction(x: u32, share: u32) -> u32 {
 
 impl ErrorBounds {
     /// Error bounds for a material of this `exponent` under `lights` lights.
-    #[must_use]
     pub fn new(reflectance: LitMaterial<'_>, exponent: u16, lights: usize) -> Self {
         let light = |light| {
             let [diffuse, specular] = if light < lights { reflectance.largest_gains(light) } else { [0; 2] };

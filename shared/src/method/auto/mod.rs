@@ -74,7 +74,6 @@ fn half_way(setup: &TriangleSetup<'_>, k: usize, floor: i32) -> i32 {
 /// Levels by which a choice raises each channel, Q9.7. Where the table of colours can be interpolated, one level stands for all channels, and each
 /// rises by its share of diffuse light. Elsewhere all channels rise alike.
 #[inline(never)]
-#[must_use]
 pub fn raises(choice: Choice, setup: &TriangleSetup<'_>, shading: &Shading<'_>) -> [i32; 3] {
     let (Choice::Solid(raise) | Choice::Linear(raise)) = choice else { return [0; 3] };
     let reflectance = shading.reflectance;
