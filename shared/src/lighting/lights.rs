@@ -266,8 +266,7 @@ impl Viewer {
 /// Converts the position of a vertex to a point where light is computed, Q7.25.
 #[inline]
 pub fn point(position: [i16; 3]) -> [i32; 3] {
-    let [x, y, z] = wide(position);
-    [x << (POSITION - UNIT), y << (POSITION - UNIT), z << (POSITION - UNIT)]
+    map(wide(position), |c| c << (POSITION - UNIT))
 }
 
 /// Cosine of the angle between two unit vectors, Q2.30, rounded down: their dot product.

@@ -398,19 +398,15 @@ impl ErrorBounds {
         let mut sum = self.ambient as i32;
         for (light, [towards, half]) in self.lights.iter().zip(cosines) {
             let [towards, half] = [towards, half].map(|cosines| curvature.cosine(above_zero(largest(cosines))).min(1 << BOUND));
-            // The table of highlights is right to 2^-7 of the brightest.
-            let highlight = if half < self.threshold { 0 } else { self.share_of(light, reflectance, (half as i32) << (COSINE - BOUND)) };
-            sum += (((light.diffuse * towards) >> BOUND) + 1 + highlight) as i32;
+            sum += (((light.diffuse * towards) >> BOUND) + 1) as i32;
+            if half >= self.threshold {
+                let entry = reflectance.highlight_at((half as i32) << (COSINE - BOUND));
+                let level = if reflectance.holds_levels() { entry } else { (light.specular * entry) >> 16 };
+                // The table of highlights is right to 2^-7 of the brightest.
+                sum += (level + (light.specular >> 7) + 2) as i32;
+            }
         }
         sum > FULL
-    }
-
-    /// The level of a light's highlight at N·H (Q2.30), Q9.7, rounded up.
-    #[inline]
-    fn share_of(&self, light: &LightBounds, reflectance: LitMaterial<'_>, half: i32) -> u32 {
-        let entry = reflectance.highlight_at(half);
-        let level = if reflectance.holds_levels() { entry } else { (light.specular * entry) >> 16 };
-        level + (light.specular >> 7) + 2
     }
 
     /// The diffuse level of a light for a difference of cosines, Q2.30; the level is Q9.7, rounded up.

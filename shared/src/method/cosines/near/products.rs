@@ -55,11 +55,7 @@ impl Products {
         if least(coefficients(pp)) < ONE / 4 {
             return None;
         }
-        let normal = |vertex: &Vertex| {
-            let [x, y, z] = wide(vertex.normal);
-            [x << (FRACTION - UNIT), y << (FRACTION - UNIT), z << (FRACTION - UNIT)]
-        };
-        let np = field_product(&map(vertices, normal), &ways);
+        let np = field_product(&map(vertices, |vertex| map(wide(vertex.normal), |c| c << (FRACTION - UNIT))), &ways);
         Some(Self { np, pp, fp: along(ways, fixed) })
     }
 
@@ -132,10 +128,10 @@ impl Products {
 
 /// The vectors from vertices to what is near at `near`, Q7.25, in units of the longest one, with [`FRACTION`] fraction bits.
 #[inline(never)]
-pub(super) fn ways([a, b, c]: [&Vertex; 3], near: [i32; 3]) -> [[i32; 3]; 3] {
-    let half = |[x, y, z]: [i32; 3]| [x >> 1, y >> 1, z >> 1];
-    let (near, way) = (half(near), |vertex: &Vertex| half(point(vertex.position)));
-    over_longest::<FRACTION>([sub(near, way(a)), sub(near, way(b)), sub(near, way(c))])
+pub(super) fn ways(vertices: [&Vertex; 3], near: [i32; 3]) -> [[i32; 3]; 3] {
+    let half = |v: [i32; 3]| map(v, |c| c >> 1);
+    let near = half(near);
+    over_longest::<FRACTION>(map(vertices, |vertex| sub(near, half(point(vertex.position)))))
 }
 
 /// The products of [`ways`] with a direction, Q2.30.
