@@ -83,26 +83,20 @@ pub enum HighlightField {
 pub enum VertexLight {
     /// No light is computed at vertices.
     None,
-    /// The cosines N·L and N·H (Q2.30), where N is the normal, L the direction to the light, and H the half vector between light and
-    /// viewer. They are there for one directional light, or for two on a material of several colours, if the viewer is infinitely distant.
-    /// In all other scenes the four numbers are 0.
+    /// N·L and N·H of one directional light, or of each of two on a material of several colours, if the viewer is infinitely distant. In all other
+    /// scenes the four numbers are 0.
     #[doc(hidden)]
     Cosines,
-    /// The cosines N·L and N·H (Q2.30), if there is just one light, which is directional, and the viewer is infinitely distant. N is the
-    /// normal, L the direction to the light, and H the half vector between light and viewer. In all other scenes it is like
+    /// N·L and N·H, if there is just one light, which is directional, and the viewer is infinitely distant. In all other scenes it is like
     /// [`Self::Levels`].
     #[doc(hidden)]
     CosinesOrLevels,
-    /// The cosines N·L and N·H (Q2.30) and a third number, if there is just one light, which is directional, and the viewer is infinitely
-    /// distant. N is the normal, L the direction to the light, and H the half vector between light and viewer. The third number is the
-    /// light level (Q9.7) on a material that is drawn in one channel, and the strength of the highlight (unsigned Q0.16) on one that is
-    /// drawn in three. In all other scenes it is like [`Self::Levels`].
+    /// Like [`Self::CosinesOrLevels`], with a third number beside N·L and N·H: the light level on a material that is drawn in one channel, and the strength
+    /// of the highlight (unsigned Q0.16) on one that is drawn in three.
     #[doc(hidden)]
     ReflectionOrLevels,
-    /// The cosines N·L and N·H (Q2.30) and a third number, if there is just one light, which is directional, and the viewer is infinitely
-    /// distant. N is the normal, L the direction to the light, and H the half vector between light and viewer. The third number is the
-    /// light level (Q9.7) on a material that is drawn in one channel, and the strength of the highlight (unsigned Q0.16) on one that is
-    /// drawn in three. If a light or the viewer is near, it is like [`Self::Levels`], and in all other scenes like [`Self::Cosines`].
+    /// Like [`Self::ReflectionOrLevels`] if there is just one light, which is directional, and the viewer is infinitely distant. If a light or the viewer is
+    /// near, it is like [`Self::Levels`], and in all other scenes like [`Self::Cosines`].
     #[doc(hidden)]
     CosinesAndReflection,
     /// The light levels of red, green and blue, for any number and kind of lights: see [`TriangleSetup::levels`](crate::method::TriangleSetup::levels).

@@ -443,15 +443,13 @@ impl Shading<'_> {
         setup.draw_spans(&mut ManyLights { reflectance, model, common, lights, diffuse, lut, ambient, colour, shared, levels }, canvas)
     }
 
-    /// Returns the cosines N·L (normal and direction to the light) and N·H (normal and half vector between light and viewer) at the three
-    /// corners (Q2.30), for the directional light `source` and an infinitely distant viewer. A point light gives zeros.
+    /// N·L and N·H at the three corners, Q2.30, for the directional light `source` and an infinitely distant viewer. A point light gives zeros.
     pub fn constant_cosines(&self, setup: &TriangleSetup<'_>, source: &Source) -> [[i32; 3]; 2] {
         source.directional().map_or([[0; 3]; 2], |directions| directions.map(|direction| setup.corner_cosines(direction)))
     }
 
-    /// Returns the cosines N·L (normal and direction to the light) and N·H (normal and half vector between light and viewer) of a light as
-    /// fields that are quadratic over the triangle. `nodes` are the three corners and then the midpoints of the edges 0-1, 1-2 and 2-0.
-    /// `map` is applied to each pair of cosines first, for example to take square roots.
+    /// N·L and N·H of a light as fields that are quadratic over the triangle. `nodes` are the three corners and then the midpoints of the edges 0-1, 1-2
+    /// and 2-0. `map` is applied to each pair of cosines first, for example to take square roots.
     pub fn six_products(&self, nodes: &[Node; 6], source: &Source, map: impl Fn([i32; 2]) -> [i32; 2]) -> QuadraticNodes<2> {
         let values = nodes.map(|node| map(self.lighting.directions(source, node.position).map(|direction| cosine(node.normal, direction))));
         quadratic([values.map(|[light, _]| light), values.map(|[_, half]| half)])

@@ -531,8 +531,7 @@ impl Area for TriangleSetup<'_> {
 /// The material and the lights of a triangle, which the renderer passes to [`Method::shade`].
 #[derive(Clone, Copy)]
 pub struct Shading<'f> {
-    /// The material under the lights of the scene. It converts cosines to light levels: N·L (normal and direction to the light) for diffuse
-    /// light, and N·H (normal and half vector between light and viewer) for highlights.
+    /// The material under the lights of the scene. It converts cosines to light levels: N·L for diffuse light, and N·H for highlights.
     #[doc(hidden)]
     pub reflectance: LitMaterial<'f>,
     /// The lights of the scene and the viewer, in object space.

@@ -242,9 +242,8 @@ impl TriangleSetup<'_> {
         self.six_half_at(self.middles(), [a.light[1], b.light[1], c.light[1]], exponent)
     }
 
-    /// Returns the cosine N·H of normal and half vector between light and viewer (Q2.30) at the three corners and then at the midpoints of
-    /// the edges 0-1, 1-2 and 2-0, from its values at the `corners`. It can be used for a directional light and an infinitely distant
-    /// viewer. `exponent` is the material's highlight exponent; larger ones are computed more exactly.
+    /// [`Self::six_from`] for N·H of a directional light and an infinitely distant viewer. `exponent` is the material's; for larger ones it is computed more
+    /// exactly.
     #[inline(always)]
     pub(crate) fn six_half_from(&self, corners: [i32; 3], exponent: u16) -> [i32; 6] {
         if is_steep(exponent) { exact_six(self.vertices(), corners) } else { self.six_from(corners) }
