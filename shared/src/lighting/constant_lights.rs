@@ -430,8 +430,8 @@ impl<C: Pixel> NeutralRgb<C> {
     #[inline(always)]
     pub(super) fn tint(&self, [red, green, blue]: [i32; 3], raise: i32) -> Option<(TintLevel, Tint<C>)> {
         let Self { outer, middle, rounding } = self;
-        // The largest levels of channels are as 1 - 2^-bits. Levels are rounded to the nearest, so that products with such a number of 8 bits differ by
-        // at most 256; ambient light is rounded twice, because half of the last place of cosines is added to it.
+        // The largest levels of channels are as 1 - 2^-bits. Levels are rounded to the nearest, so that products with such a number of 8 bits differ
+        // by at most 256; ambient light is rounded twice, because half of the last place of cosines is added to it.
         let [full, full_green] = [0, 1].map(|k| (1 << 8) - (1 << (8 - C::LEVELS[k])));
         let is_alike = |outer: i32, middle: i32, slack: i32| (outer * full_green).wrapping_sub(middle * full).abs() <= slack;
         let level = TintLevel { ambient: outer.ambient >> FACTOR, diffuse: outer.diffuse };

@@ -55,8 +55,8 @@ pub enum Highlight {
     Half,
     /// The square of this cosine: ((N·H)²)^(n/2). The base is the square root of x.
     HalfSquared,
-    /// The cosine of reflected light and viewer: (R·V)^(n/4) (Phong 1975). The base is the fourth root of x. If L, N and V lie in a plane, the angle of R
-    /// and V is twice the angle of N and H.
+    /// The cosine of reflected light and viewer: (R·V)^(n/4) (Phong 1975). The base is the fourth root of x. If L, N and V lie in a plane, the angle
+    /// of R and V is twice the angle of N and H.
     Reflected,
     /// The square root z of N·H: (z²)^n. The base is x². Below 1/2 it goes on as the tangent there: x - 1/4.
     Root,
@@ -132,8 +132,8 @@ pub const ENTRY: u32 = 16;
 impl HighlightCurve {
     /// The curve `floor + full base^n`.
     ///
-    /// Domain: `n` is 1 to 1024, at least 2 for [`Highlight::HalfSquared`] and 4 for [`Highlight::Reflected`]; `full` and `floor` are unsigned Q0.16, their
-    /// sum at most 1.
+    /// Domain: `n` is 1 to 1024, at least 2 for [`Highlight::HalfSquared`] and 4 for [`Highlight::Reflected`]; `full` and `floor` are unsigned Q0.16,
+    /// their sum at most 1.
     #[must_use]
     pub fn new(n: u16, base: Highlight, full: u32, floor: u16) -> Self {
         let n4 = u32::from(n) << 2;

@@ -91,12 +91,12 @@ pub enum VertexLight {
     /// [`Self::Levels`].
     #[doc(hidden)]
     CosinesOrLevels,
-    /// Like [`Self::CosinesOrLevels`], with a third number beside N·L and N·H: the light level on a material that is drawn in one channel, and the strength
-    /// of the highlight (unsigned Q0.16) on one that is drawn in three.
+    /// Like [`Self::CosinesOrLevels`], with a third number beside N·L and N·H: the light level on a material that is drawn in one channel, and the
+    /// strength of the highlight (unsigned Q0.16) on one that is drawn in three.
     #[doc(hidden)]
     ReflectionOrLevels,
-    /// Like [`Self::ReflectionOrLevels`] if there is just one light, which is directional, and the viewer is infinitely distant. If a light or the viewer is
-    /// near, it is like [`Self::Levels`], and in all other scenes like [`Self::Cosines`].
+    /// Like [`Self::ReflectionOrLevels`] if there is just one light, which is directional, and the viewer is infinitely distant. If a light or the
+    /// viewer is near, it is like [`Self::Levels`], and in all other scenes like [`Self::Cosines`].
     #[doc(hidden)]
     CosinesAndReflection,
     /// The light levels of red, green and blue, for any number and kind of lights: see [`TriangleSetup::levels`](crate::method::TriangleSetup::levels).

@@ -448,8 +448,8 @@ impl Shading<'_> {
         source.directional().map_or([[0; 3]; 2], |directions| directions.map(|direction| setup.corner_cosines(direction)))
     }
 
-    /// N·L and N·H of a light as fields that are quadratic over the triangle. `nodes` are the three corners and then the midpoints of the edges 0-1, 1-2
-    /// and 2-0. `map` is applied to each pair of cosines first, for example to take square roots.
+    /// N·L and N·H of a light as fields that are quadratic over the triangle. `nodes` are the three corners and then the midpoints of the edges 0-1,
+    /// 1-2 and 2-0. `map` is applied to each pair of cosines first, for example to take square roots.
     pub fn six_products(&self, nodes: &[Node; 6], source: &Source, map: impl Fn([i32; 2]) -> [i32; 2]) -> QuadraticNodes<2> {
         let values = nodes.map(|node| map(self.lighting.directions(source, node.position).map(|direction| cosine(node.normal, direction))));
         quadratic([values.map(|[light, _]| light), values.map(|[_, half]| half)])

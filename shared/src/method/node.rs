@@ -242,8 +242,8 @@ impl TriangleSetup<'_> {
         self.six_half_at(self.middles(), [a.light[1], b.light[1], c.light[1]], exponent)
     }
 
-    /// [`Self::six_from`] for N·H of a directional light and an infinitely distant viewer. `exponent` is the material's; for larger ones it is computed more
-    /// exactly.
+    /// [`Self::six_from`] for N·H of a directional light and an infinitely distant viewer. `exponent` is the material's; for larger ones it is
+    /// computed more exactly.
     #[inline(always)]
     pub(crate) fn six_half_from(&self, corners: [i32; 3], exponent: u16) -> [i32; 6] {
         if is_steep(exponent) { exact_six(self.vertices(), corners) } else { self.six_from(corners) }
