@@ -98,7 +98,7 @@ impl<'a, C: Pixel> MaterialTables<'a, C> {
     #[inline(always)]
     pub(crate) fn neutral_rgb(&self) -> Option<NeutralRgb<C>> {
         let [[even, ..], _] = &self.reflectance.reflectance().sums;
-        NeutralRgb::new(even, self.reflectance.quarter())
+        NeutralRgb::new(even, self.reflectance.quarter)
     }
 
     /// The level and the colour of a surface of one colour, `raise` (Q9.7) higher, if the light has no hue and fits a word.
@@ -136,7 +136,7 @@ impl<'a, C: Pixel> MaterialTables<'a, C> {
         let [even, odd] = &self.reflectance.reflectance().sums;
         let forth = ByTurns::new([even.first_chunk()?, odd.first_chunk()?]);
         let back = ByTurns::new([even.last_chunk()?, odd.last_chunk()?]);
-        (LIGHTS && COLOURS && !C::GRAY && self.reflectance.lights() == 2).then_some([TwoLightsRgb(forth), TwoLightsRgb(back)])
+        (LIGHTS && COLOURS && !C::GRAY && self.reflectance.lights == 2).then_some([TwoLightsRgb(forth), TwoLightsRgb(back)])
     }
 
     /// The colours where light is summed. Domain: [`Reflectance::sums_lights`].
@@ -175,7 +175,7 @@ impl<'a, C: Pixel> MaterialTables<'a, C> {
     #[inline(always)]
     fn mixed_by_turns(&self, levels: [i32; 3]) -> [C::Stored; 2] {
         let [r, g, b] = zip(levels, C::LEVELS, rounded);
-        let [r_more, g_more, b_more] = steps(C::DEPTH, self.reflectance.quarter());
+        let [r_more, g_more, b_more] = steps(C::DEPTH, self.reflectance.quarter);
         let even = C::mixed([r - r_more, g - g_more, b - b_more]).stored();
         if C::Ramps::CHECKERED { [even, C::mixed([r + r_more, g + g_more, b + b_more]).stored()] } else { [even; 2] }
     }
@@ -226,7 +226,7 @@ mod tests {
                 let exact = reflectance.reflection(1 << COSINE, 1 << 16);
                 let colours = tables.one_light([1 << COSINE, 1 << COSINE]).map(|stored| Rgb565::from_stored(stored).channels());
                 for (colour, turn) in colours.into_iter().zip([-1, 1]) {
-                    let quarter = reflectance.quarter() * turn;
+                    let quarter = reflectance.quarter * turn;
                     let expected = zip(exact, Rgb565::DEPTH, |level, depth| {
                         let level = ((level + (1 << (LEVEL + 7 - depth))) << (CHANNEL - LEVEL)) + (quarter << (8 - depth));
                         (level >> (CHANNEL + 8 - depth)).min((1 << depth) - 1)

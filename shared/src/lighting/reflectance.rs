@@ -97,10 +97,12 @@ pub struct Reflectance {
     /// The power function of highlights.
     pub highlights: HighlightCurve,
     /// The levels of ambient light, Q9.7.
-    pub(super) ambient: [i32; 3],
-    highlight_threshold: i32,
-    /// See [`Self::quarter`].
-    quarter: i32,
+    pub(crate) ambient: [i32; 3],
+    /// Smallest N·H, Q2.30, whose highlight counts, see [`HighlightCurve::highlight_threshold`]; [`Self::NO_HIGHLIGHT`] if there is none.
+    pub(crate) highlight_threshold: i32,
+    /// Dither offset in three channels, a quarter of a step, with [`CHANNEL`] fraction bits, as if channels had eight bits. Even rows are lower by it
+    /// and odd ones higher; 0 without dither.
+    pub(crate) quarter: i32,
     /// Bits of each channel of the pixel format.
     depth: [u32; 3],
     pub(super) gains: [Gains; ROOM],
@@ -111,8 +113,8 @@ pub struct Reflectance {
     /// Sums for [`OneLightRgb`](super::constant_lights::OneLightRgb): of the first light, of the second light, and of the first light again, so that
     /// two neighbours are both lights in either order. One array is for even rows, one for odd rows.
     pub(super) sums: [[Sums; 3]; 2],
-    /// See [`Self::ambient_sums`].
-    ambient_sums: [i32; 3],
+    /// The sums to which [`Factors::add`] adds all lights: ambient light, minus what a table entry without a highlight would add for each light.
+    pub(crate) ambient_sums: [i32; 3],
     /// The level without diffuse light and the diffuse level at cosine 1, Q9.7, in the channel that is the index of the table of colours.
     pub(super) ramp: [i32; 2],
     /// Channels at full level for dither, Q0.8 scaled to the output's depth.
@@ -121,8 +123,9 @@ pub struct Reflectance {
     three_channels: u8,
     /// Not 0 if [`Self::has_ramp`].
     has_ramp: u8,
-    /// See [`Self::lights`].
-    lights: u8,
+    /// Number of lights, if it is one or two, the method has loops for them, and their levels fit their formats; [`SUMMED`] for other lights; otherwise
+    /// 0.
+    pub(crate) lights: u8,
     /// Not 0 if [`Self::has_two_lights`].
     has_two_lights: u8,
     /// Not 0 if highlights, or lights, are computed where they cannot be seen. The feature `skips` can turn this on.
@@ -266,14 +269,7 @@ impl Reflectance {
     /// Whether the table of highlights holds levels: the ambient level plus the highlight of the only light.
     #[inline]
     pub fn holds_levels(&self) -> bool {
-        self.lights() == 1 && !self.three_channels()
-    }
-
-    /// Number of lights, if it is one or two, the method has loops for them, and their levels fit their formats; [`SUMMED`] for other lights; otherwise
-    /// 0.
-    #[inline]
-    pub fn lights(&self) -> u8 {
-        self.lights
+        self.lights == 1 && !self.three_channels()
     }
 
     /// The table of highlights among `tables`, if there is one for this material.
@@ -304,11 +300,6 @@ impl Reflectance {
         self.highlight_threshold == Self::NO_HIGHLIGHT
     }
 
-    /// Smallest N·H, Q2.30, whose highlight counts, see [`HighlightCurve::highlight_threshold`]; [`Self::NO_HIGHLIGHT`] if there is none.
-    pub fn highlight_threshold(&self) -> i32 {
-        self.highlight_threshold
-    }
-
     /// Whether the light of all lights fits a word as [`Sum`]s add it up.
     #[inline]
     pub fn sums_fit(&self) -> bool {
@@ -324,13 +315,6 @@ impl Reflectance {
                 *sums = zip(*sums, steps(self.depth, quarter), |sum, step| sum.raised(step >> less));
             }
         }
-    }
-
-    /// Dither offset in three channels, a quarter of a step, with [`CHANNEL`] fraction bits, as if channels had eight bits. Even rows are lower by it
-    /// and odd ones higher; 0 without dither.
-    #[inline]
-    pub(crate) fn quarter(&self) -> i32 {
-        self.quarter
     }
 
     /// The levels of ambient light in the sums of the first light, without what is added there for rounding and dither.
@@ -444,12 +428,6 @@ impl Reflectance {
         [level(r, r1, r2).min(FULL), level(g, g1, g2).min(FULL), level(b, b1, b2).min(FULL)]
     }
 
-    /// The levels of ambient light, Q9.7.
-    #[inline]
-    pub fn ambient(&self) -> [i32; 3] {
-        self.ambient
-    }
-
     /// [`Self::excess`] where light is summed. The sums of one light or two fit a word; there it is 0.
     fn summed_excess(&self) -> u32 {
         if self.lights == SUMMED { self.excess() } else { 0 }
@@ -469,12 +447,6 @@ impl Reflectance {
         let ([dr, dg, db], [sr, sg, sb]) = (diffuse, specular);
         let (diffuse, specular) = (|gain: u16| i32::from(gain) >> excess, |gain: u16| (i32::from(gain) + 1) >> (1 + excess));
         Factors { diffuse: [diffuse(dr), diffuse(dg), diffuse(db)], specular: [specular(sr), specular(sg), specular(sb)] }
-    }
-
-    /// The sums to which [`Factors::add`] adds all lights: ambient light, minus what a table entry without a highlight would add for each light.
-    #[inline]
-    pub fn ambient_sums(&self) -> [i32; 3] {
-        self.ambient_sums
     }
 
     /// Converts sums of all lights to intensities.

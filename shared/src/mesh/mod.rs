@@ -54,7 +54,7 @@ impl<C: Pixel> Drawing<'_, C> {
         let MeshPass { shading: Shading { reflectance, lighting, .. }, perspective, .. } = &self.pass;
         Style {
             three_channels: reflectance.three_channels(),
-            lights: if lighting.is_constant() { reflectance.lights() } else { 0 },
+            lights: if lighting.is_constant() { reflectance.lights } else { 0 },
             is_near: !(lighting.is_constant() || C::GRAY && self.pass.stage.is_coloured()),
             // Boards with displays of greys have little flash: no loops there.
             near_loops: !C::GRAY && near::have_loops(lighting, reflectance),

@@ -399,7 +399,7 @@ impl Shading<'_> {
         let Some(lut) = reflectance.table().map(HighlightLut::by_cosine) else { return 0 };
         // What a table entry without a highlight adds; the sums are less by this.
         let floor = reflectance.highlights.floor();
-        let mut ambient = reflectance.ambient_sums();
+        let mut ambient = reflectance.ambient_sums;
         let mut pure = ambient;
         let (mut lights, mut diffuse) = (heapless::Vec::<_, MAX_LIGHTS>::new(), heapless::Vec::<_, MAX_LIGHTS>::new());
         let (mut without_highlight, mut without_light) = (0, 0);

@@ -488,7 +488,7 @@ impl TriangleSetup<'_> {
     #[doc(hidden)]
     #[inline]
     pub fn highlight_threshold(&self, reflectance: &Reflectance) -> i32 {
-        self.before_division(reflectance.highlight_threshold())
+        self.before_division(reflectance.highlight_threshold)
     }
 
     /// What a cosine, Q2.30, is at least before it is divided by |N|, where N·H is linear and |N| at least [`Triangle::min_normal_length`].
@@ -686,7 +686,7 @@ impl Shading<'_> {
         Nodes<N, 3, RANGE>: Field,
     {
         let patch = || walked(three_levels::<N, C>(channels(), raise).fit(setup.gradients));
-        setup.fill(patch, Rgb::new(self.reflectance.quarter()), band)
+        setup.fill(patch, Rgb::new(self.reflectance.quarter), band)
     }
 }
 

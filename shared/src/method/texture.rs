@@ -244,7 +244,7 @@ where
     if C::GRAY {
         return if GrayTexels::<C>::EXISTS { one().draw(setup, texture, GrayTexels(Ramp(tables.ramps)), band) } else { None };
     }
-    let quarter = shading.reflectance.quarter();
+    let quarter = shading.reflectance.quarter;
     if shading.reflectance.is_neutral() && NeutralTexels::<C>::EXISTS {
         return one().draw(setup, texture, NeutralTexels::<C>::new(quarter), band);
     }

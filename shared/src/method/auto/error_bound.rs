@@ -102,13 +102,13 @@ impl ErrorBounds {
             LightBounds { diffuse, specular, narrowed }
         };
         let lights = [light(0), light(1)];
-        let [r, g, b] = reflectance.ambient();
+        let [r, g, b] = reflectance.ambient;
         let ambient = r.max(g).max(b) as u32;
         let sum = lights.iter().fold(ambient, |sum, light| sum + light.diffuse + light.specular);
         Self {
             lights,
             ambient,
-            threshold: reflectance.highlight_threshold().max(0) as u32 >> (COSINE - BOUND),
+            threshold: reflectance.highlight_threshold.max(0) as u32 >> (COSINE - BOUND),
             exponent,
             part: highlight_error::part(exponent),
             may_saturate: u8::from(sum > FULL as u32),

@@ -160,7 +160,7 @@ fn highlight(
     let square = ((turn * turn) >> 16) + 1;
     // Between the corners N·H is at most this much larger.
     let most = half + (times(square, DIFFUSE) >> 1) + 1;
-    if (most << 15) as i32 <= shading.reflectance.highlight_threshold() {
+    if (most << 15) as i32 <= shading.reflectance.highlight_threshold {
         return Some(0);
     }
     let factor = if exponent < 10 {

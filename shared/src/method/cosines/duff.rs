@@ -82,14 +82,14 @@ pub(crate) fn draw<C: Pixel>(
     band: &mut Band<'_, C>,
 ) -> Option<u32> {
     let reflectance = tables.reflectance;
-    let has_highlight = || match reflectance.lights() {
+    let has_highlight = || match reflectance.lights {
         1 => largest(&corners()[1]) >= setup.highlight_threshold(reflectance),
         2 => setup.corners_of_two_lights().iter().any(|[_, half]| largest(half) >= setup.highlight_threshold(reflectance)),
         _ => true,
     };
     let is_steep = is_steep(shading.exponent) && has_highlight();
     // Summed lights are asked for their highlights later.
-    if is_steep && shading.exponent > STEEPEST && reflectance.lights() != SUMMED {
+    if is_steep && shading.exponent > STEEPEST && reflectance.lights != SUMMED {
         return None;
     }
     // |N|² has two more bits than other quadratics, and its root is half as steep.
@@ -97,7 +97,7 @@ pub(crate) fn draw<C: Pixel>(
         return None;
     }
     let lengths = Lengths::of(setup, is_steep)?;
-    if SUMS_CONSTANT_LIGHTS && reflectance.lights() > 1 {
+    if SUMS_CONSTANT_LIGHTS && reflectance.lights > 1 {
         // In greys the light of two is summed as well.
         return if C::GRAY || reflectance.sums_lights() {
             summed::draw::<C, false>(setup, shading, &lengths, tables, band)

@@ -77,7 +77,7 @@ impl Loops for Phong {
             if C::GRAY || !near::suits(setup, shading, tables.reflectance) {
                 return None;
             }
-            if SUMS_LIGHTS && (tables.reflectance.lights() != 1 || setup.albedos().is_some()) {
+            if SUMS_LIGHTS && (tables.reflectance.lights != 1 || setup.albedos().is_some()) {
                 return summed::draw::<C, true>(setup, shading, &Lengths::of(setup, is_steep(shading.exponent))?, tables, band);
             }
             match near::draw(setup, shading, tables, band)? {

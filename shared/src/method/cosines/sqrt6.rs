@@ -149,7 +149,7 @@ pub(crate) fn draw_any<const ROOT: IsRoot, C: Pixel>(
     if !setup.is_evenly_far() {
         return None;
     }
-    if LIGHTS && tables.reflectance.lights() == 2 {
+    if LIGHTS && tables.reflectance.lights == 2 {
         return draw_two::<ROOT, C>(setup, shading, tables, band);
     }
     let (cosines, rgb) = (&setup.corner_lights(), tables.one_light_rgb());

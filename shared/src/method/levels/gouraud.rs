@@ -203,7 +203,7 @@ fn draw_in_space<C: Pixel>(
     let channels = channels(corner_levels(setup, shading));
     if !C::GRAY && reflectance.three_channels() {
         let levels = || seen.with(three_levels::<3, C>(channels, 0).slant());
-        return Some(setup.fill(levels, Rgb::new(reflectance.quarter()), band));
+        return Some(setup.fill(levels, Rgb::new(reflectance.quarter), band));
     }
     let patch = || seen.with(indices::<3, C>(channels[0]).slant());
     Some(if C::Ramps::CHECKERED {

@@ -57,7 +57,7 @@ pub(crate) fn take(style: Style) -> bool {
 
 /// Whether there are loops for a surface under these lights, of which one or the viewer is near.
 pub(crate) fn have_loops(lighting: &Lighting, reflectance: &Reflectance) -> bool {
-    match reflectance.lights() {
+    match reflectance.lights {
         0 => false,
         1 => lighting.has_one_near(),
         _ => SUMS_LIGHTS,
