@@ -329,34 +329,19 @@ impl<C: Pixel> LitColours for OneLightRgb<'_, C> {
     type Pixel = C;
 }
 
-impl<C: Pixel> Shades<WithHighlight> for OneLightRgb<'_, C> {
+impl<C: Pixel, L: MayHaveHighlight> Shades<L> for OneLightRgb<'_, C> {
     #[inline(always)]
-    fn colour(&self, bits: u32, WithHighlight(diffuse, highlight): WithHighlight) -> C {
+    fn colour(&self, bits: u32, light: L) -> C {
+        let WithHighlight(diffuse, highlight) = light.into();
         let ([r, g, b], cosine, highlight) = (self.0.now(), cosine(bits, diffuse), highlight as i32);
         C::mixed([r.level_from_highlight(cosine, highlight), g.level(cosine, highlight), b.level(cosine, highlight)])
     }
 
-    const NUMERATORS: usize = 2;
+    const NUMERATORS: usize = 1 + L::HIGHLIGHTS;
 
     #[inline(always)]
     fn lit<'k>(&'k self, lookup: kernels::Lookup<'k>) -> Option<kernels::Lit<'k>> {
-        C::lit(kernels::Colours::Light(self.in_kernels()), 1, lookup)
-    }
-}
-
-impl<C: Pixel> Shades<DiffuseOnly> for OneLightRgb<'_, C> {
-    #[inline(always)]
-    fn colour(&self, bits: u32, DiffuseOnly(diffuse): DiffuseOnly) -> C {
-        let ([r, g, b], cosine) = (self.0.now(), cosine(bits, diffuse));
-        let level = |sum: &Sum| sum.ambient.wrapping_add(sum.diffuse.wrapping_mul(cosine));
-        C::mixed([level(r), level(g), level(b)])
-    }
-
-    const NUMERATORS: usize = 1;
-
-    #[inline(always)]
-    fn lit<'k>(&'k self, lookup: kernels::Lookup<'k>) -> Option<kernels::Lit<'k>> {
-        C::lit(kernels::Colours::Light(self.in_kernels()), 0, lookup)
+        C::lit(kernels::Colours::Light(self.in_kernels()), L::HIGHLIGHTS, lookup)
     }
 }
 
