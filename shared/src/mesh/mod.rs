@@ -8,7 +8,7 @@ use crate::{
     features::COLOURED,
     geometry::bin::{TriangleKey, Walk},
     lighting::material_tables::MaterialTables,
-    method::{DrawTriangle, General, Loops, Middles, Shading, Style, TriangleSetup, cosines::near, needs_general, tiles},
+    method::{DrawTriangle, General, Loops, Shading, Style, TriangleSetup, cosines::near, needs_general, tiles},
     pixel::{Pixel, gamma::Gamma},
     raster::{
         band::Band,
@@ -156,7 +156,7 @@ impl<C: Pixel> Drawing<'_, C> {
             gradients: &gradients,
             corners,
             albedos: paint.lent(),
-            nodes_of_colours: [Middles::IN_SPACE; COLOURED],
+            nodes_of_colours: [None; COLOURED],
             texture: self.pass.painting.texture(&paint),
             triangle,
             vertices: self.pass.vertices,

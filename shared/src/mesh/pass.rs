@@ -14,7 +14,7 @@ use crate::{
         painting::{Paint, Painting},
         vertices::VertexStage,
     },
-    method::{Method, Middles, Shading, TriangleSetup},
+    method::{Method, Shading, TriangleSetup},
     raster::triangle::{ScreenTriangle, turned},
     setup::{
         edge::MAX_STEPPED_WIDTH,
@@ -167,7 +167,7 @@ impl MeshPass<'_> {
             gradients: &gradients,
             corners,
             albedos: paint.lent(),
-            nodes_of_colours: [Middles::IN_SPACE; COLOURED],
+            nodes_of_colours: [None; COLOURED],
             texture: self.painting.texture(&paint),
             turned: by,
             triangle: placed.triangle,

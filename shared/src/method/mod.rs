@@ -57,7 +57,7 @@ pub use crate::{
 };
 use core::fmt;
 pub use facts::{Facts, VertexLight};
-pub(crate) use perspective::{LinearWay, Middles};
+pub(crate) use perspective::{IN_SPACE, LinearWay, Middles};
 use zerocopy::FromZeros as _;
 // For the crate of the literature.
 #[doc(hidden)]
@@ -350,7 +350,7 @@ impl TriangleSetup<'_> {
     /// The nodes on the edges of the triangle, on the screen if [`Self::has_screen_nodes`].
     #[inline(always)]
     pub(crate) fn middles(&self) -> Middles {
-        Middles(if PERSPECTIVE && self.has_screen_nodes() { self.inv_depth().map(perspective::middles) } else { None })
+        if PERSPECTIVE && self.has_screen_nodes() { self.inv_depth().map(perspective::middles) } else { None }
     }
 
     /// Whether a quadratic on the screen can have its nodes there: perspective is off, or no interpolated normal is so short that the rounding of a

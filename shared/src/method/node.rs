@@ -12,7 +12,7 @@ use crate::{
         rsqrt::{HalfRsqrt, LEAST, rsqrt_wide},
         vector::{add, dot, map, normalise, sub, wide, zip},
     },
-    method::{Middles, Shading, TriangleSetup, perspective},
+    method::{IN_SPACE, Middles, Shading, TriangleSetup, perspective},
     stream::record::Vertex,
 };
 
@@ -64,7 +64,7 @@ impl Shading<'_> {
     #[inline(never)]
     pub(crate) fn middle_parts(&self, setup: &TriangleSetup<'_>) -> [Parts; 3] {
         let is_fast = self.lighting.is_constant() && !is_steep(self.exponent);
-        if let Middles(Some(shares)) = setup.middles() {
+        if let Some(shares) = setup.middles() {
             if is_fast {
                 let parts = |vector, half_reciprocal| {
                     self.reflectance.constant_parts(self.lighting.sources(), &InterpolatedNormal { vector, half_reciprocal })
@@ -83,14 +83,14 @@ impl Shading<'_> {
     /// Computes the light levels of red, green and blue at the [`Middles`] of the edges 0-1, 1-2 and 2-0. They are Q9.7 from 0 to 255.
     #[inline(never)]
     pub(crate) fn middle_levels(&self, setup: &TriangleSetup<'_>) -> [[i32; 3]; 3] {
-        if let Middles(Some(shares)) = setup.middles() {
+        if let Some(shares) = setup.middles() {
             return self.levels_at(setup, shares);
         }
         if self.lighting.is_constant()
             && !is_steep(self.exponent)
             && let Some([ab, bc, ca]) = &setup.middle_normals()
         {
-            let [c_ab, c_bc, c_ca] = setup.middle_colours([1 << 15; 3]);
+            let [c_ab, c_bc, c_ca] = setup.middle_colours(IN_SPACE);
             let levels = |normal, colour| self.constant_levels(normal, colour);
             return [levels(ab, c_ab), levels(bc, c_bc), levels(ca, c_ca)];
         }
@@ -155,7 +155,7 @@ impl TriangleSetup<'_> {
 
     /// [`Self::six_nodes`] with the nodes `middles`.
     pub(crate) fn six_nodes_at(&self, middles: Middles, exponent: u16) -> [Node; 6] {
-        if middles.0.is_none() {
+        if middles.is_none() {
             return self.six_nodes(exponent);
         }
         let ([a, b, c], [ab, bc, ca]) = (self.corner_nodes(), seen_nodes(self));
@@ -165,7 +165,7 @@ impl TriangleSetup<'_> {
     /// These nodes, which are the corners and then the middles of the edges, with the colours of the triangle.
     #[inline(always)]
     fn painted<const N: usize>(&self, mut nodes: [Node; N]) -> [Node; N] {
-        if let Some(colours) = self.six_colours_at([1 << 15; 3]) {
+        if let Some(colours) = self.six_colours_at(IN_SPACE) {
             nodes.iter_mut().zip(colours).for_each(|(node, colour)| node.albedo = [Some(colour); COLOURED]);
         }
         nodes
@@ -179,12 +179,12 @@ impl TriangleSetup<'_> {
 
     /// The colours at the corners and the [`Middles`], if the corners have any.
     pub(crate) fn six_colours(&self) -> Option<[Albedo; 6]> {
-        self.six_colours_at(self.middles().shares())
+        self.six_colours_at(self.middles().unwrap_or(IN_SPACE))
     }
 
     /// The colours at the nodes of a quadratic, if the corners have any.
     pub(crate) fn colours_at_nodes(&self) -> Option<[Albedo; 6]> {
-        self.six_colours_at(self.nodes_of_colours.first().copied().unwrap_or(Middles::IN_SPACE).shares())
+        self.six_colours_at(self.nodes_of_colours.first().copied().flatten().unwrap_or(IN_SPACE))
     }
 
     /// The colours at the corners and at these shares of the edges 0-1, 1-2 and 2-0, if the corners have any.
@@ -270,7 +270,7 @@ impl TriangleSetup<'_> {
     #[inline(always)]
     pub(crate) fn six_at(&self, middles: Middles, corners: [i32; 3]) -> [i32; 6] {
         match middles {
-            Middles(Some(shares)) if PERSPECTIVE => self.six_seen(shares, corners),
+            Some(shares) if PERSPECTIVE => self.six_seen(shares, corners),
             _ => self.six_from(corners),
         }
     }
@@ -279,8 +279,8 @@ impl TriangleSetup<'_> {
     #[inline(always)]
     pub(crate) fn six_half_at(&self, middles: Middles, corners: [i32; 3], exponent: u16) -> [i32; 6] {
         match middles {
-            Middles(Some(_)) if PERSPECTIVE && is_steep(exponent) => exact_six_seen(self, corners),
-            Middles(Some(shares)) if PERSPECTIVE => self.six_seen(shares, corners),
+            Some(_) if PERSPECTIVE && is_steep(exponent) => exact_six_seen(self, corners),
+            Some(shares) if PERSPECTIVE => self.six_seen(shares, corners),
             _ => self.six_half_from(corners, exponent),
         }
     }

@@ -35,21 +35,12 @@ pub(crate) enum LinearWay {
     InSpace,
 }
 
-/// Points on the edges of a triangle that are nodes of a quadratic on the screen. Without perspective they are the middles of the edges in space;
-/// otherwise they lie at these shares of the edges, see [`middles`].
-#[derive(Clone, Copy)]
-pub(crate) struct Middles(pub(crate) Option<[u16; 3]>);
+/// Points on the edges of a triangle that are nodes of a quadratic on the screen: at these shares of the edges, see [`middles`]. `None` stands for the
+/// middles of the edges in space, which they are without perspective.
+pub(crate) type Middles = Option<[u16; 3]>;
 
-impl Middles {
-    /// The middles in space.
-    pub(crate) const IN_SPACE: Self = Self(None);
-
-    /// The shares of the edges at which they lie, Q0.16.
-    #[inline(always)]
-    pub(crate) fn shares(self) -> [u16; 3] {
-        self.0.unwrap_or([1 << 15; 3])
-    }
-}
+/// The shares of the edges at which their middles in space lie, Q0.16.
+pub(crate) const IN_SPACE: [u16; 3] = [1 << 15; 3];
 
 /// The least of three inverse depths, and how much larger the largest is, in a common unit. The least one has 16 bits and is
 /// rounded down, the difference is rounded up. `None` if the largest is at least twice the least.

@@ -27,7 +27,7 @@ use crate::{
     },
     math::vector::{map, zip},
     method::{
-        EXTRA, IntensityShader, LinearWay, Middles, RANGE, Shading, TriangleSetup, bias, channels,
+        EXTRA, IN_SPACE, IntensityShader, LinearWay, RANGE, Shading, TriangleSetup, bias, channels,
         node::mixed,
         perspective,
         products::{LinearNodes, QuadraticNodes, fitted, linear, quadratic},
@@ -416,7 +416,7 @@ impl<const CH: usize> Drawn<CH> for Light<6, CH> {
 /// The place on the screen as a quadratic, also where it is a plane; `None` where only the point in space will do.
 fn by_quadratic(setup: &TriangleSetup<'_>, texture: &Textured<'_>, way: LinearWay) -> Option<Quadric<2>> {
     let shares = match way {
-        LinearWay::Plane => Middles::IN_SPACE.shares(),
+        LinearWay::Plane => IN_SPACE,
         LinearWay::Quadratic(shares) => shares,
         LinearWay::InSpace => return None,
     };

@@ -30,7 +30,7 @@ use crate::{
     },
     math::vector::{map, zip},
     method::{
-        DrawTriangle, Facts, HighlightField, Loops, Method, Middles, RANGE, Shading, Style, TriangleSetup, VertexLight,
+        DrawTriangle, Facts, HighlightField, Loops, Method, RANGE, Shading, Style, TriangleSetup, VertexLight,
         auto::error_bound::ErrorBounds,
         channels,
         cosines::{phong::Phong, sqrt6},
@@ -177,7 +177,7 @@ impl<const QUADRATICS: bool> Method for Auto<QUADRATICS> {
             (Choice::Quadratic, None) if QUADRATICS => {
                 shading.draw_channels::<6, RANGE>(setup, &six_under_two(setup, shading), [0; 3], canvas)
             }
-            (Choice::Cosines, _) if QUADRATICS => sqrt6::shade_constant::<false>(setup, Middles::IN_SPACE, shading, canvas),
+            (Choice::Cosines, _) if QUADRATICS => sqrt6::shade_constant::<false>(setup, None, shading, canvas),
             (Choice::Quadratic | Choice::Cosines | Choice::Phong, _) => Phong.shade(setup, shading, canvas),
         }
     }

@@ -87,7 +87,7 @@ impl Method for Sqrt6 {
 
     fn shade(&self, setup: &TriangleSetup<'_>, shading: &Shading<'_>, canvas: &mut dyn Canvas) -> u32 {
         let even = setup.on_screen();
-        let (setup, middles) = if setup.is_evenly_far() { (&even, setup.middles()) } else { (setup, Middles::IN_SPACE) };
+        let (setup, middles) = if setup.is_evenly_far() { (&even, setup.middles()) } else { (setup, None) };
         if shading.lighting.is_constant() {
             return shade_constant::<true>(setup, middles, shading, canvas);
         }
