@@ -10,8 +10,12 @@
 
 use crate::duff::{draw_products, shade};
 use microphong::{
-    format::INVERSE_SUM_LENGTH,
-    math::upper,
+    format::{INVERSE_SUM_LENGTH, UNIT},
+    math::{
+        rsqrt::rsqrt_wide,
+        upper,
+        vector::{add, dot, wide},
+    },
     method::{
         Canvas, CosineLookup, Facts, Highlight, HighlightField, LightingModel, Method, QuadraticNodes, Reflection, Shading, TriangleSetup,
         VertexLight,
@@ -58,12 +62,24 @@ pub fn length(setup: &TriangleSetup<'_>, exponent: u16) -> QuadraticNodes<1> {
         (inverse.min(1 << INVERSE_SUM_LENGTH).wrapping_sub(1 << (INVERSE_SUM_LENGTH - 1)) << (FIELD_NODE - INVERSE_SUM_LENGTH)) as i32
     };
     let [ab, bc, ca] = if is_steep(exponent) {
-        setup.fine_inverse_sum_lengths().map(|inverse| inverse as i32 - (1 << (FIELD_NODE - 1)))
+        fine_inverse_sum_lengths(setup).map(|inverse| inverse as i32 - (1 << (FIELD_NODE - 1)))
     } else {
         let [ab, bc, ca] = setup.inverse_sum_lengths();
         [node(ab), node(bc), node(ca)]
     };
     QuadraticNodes::new([[0, 0, 0, ab, bc, ca]], FIELD_EXTRA).biased([1 << 29])
+}
+
+/// For each edge 0-1, 1-2, 2-0 the reciprocal length of the sum of the unit normals at its ends, with 24 fraction bits and at most 1. It is more exact
+/// than [`TriangleSetup::inverse_sum_lengths`], and takes longer.
+#[cold]
+#[inline(never)]
+fn fine_inverse_sum_lengths(setup: &TriangleSetup<'_>) -> [u32; 3] {
+    let [a, b, c] = setup.vertices().map(|vertex| wide(vertex.normal));
+    [add(a, b), add(b, c), add(c, a)].map(|sum| {
+        let (mantissa, exponent) = rsqrt_wide(dot(sum, sum).max(1) as u64);
+        mantissa.checked_shr(exponent.saturating_sub(UNIT + 24)).unwrap_or(0).min(1 << 24)
+    })
 }
 
 /// Shades by numerators times a reciprocal length.

@@ -136,7 +136,7 @@ impl TriangleSetup<'_> {
     /// Returns position and unit normal, in object space, of the three corners and then of the midpoints of the edges 0-1, 1-2 and 2-0.
     /// `exponent` is the material's, which decides how exactly the normals are computed.
     pub fn six_nodes(&self, exponent: u16) -> [Node; 6] {
-        let sums = self.sums();
+        let sums = sums(self.vertices());
         let [a, b, c] = self.corner_nodes();
         if is_steep(exponent) {
             let [ab, bc, ca] = sums.map(|(position, sum)| Node { position, normal: normalise(sum), albedo: Node::NO_COLOUR });
@@ -198,11 +198,6 @@ impl TriangleSetup<'_> {
         self.albedos.map(|albedos| Some(Albedo::mean(albedos?, map(weights, |weight| weight as u32))))
     }
 
-    /// Position, and sum of the ends' normals (Q3.14), at the middle of each edge.
-    fn sums(&self) -> [([i32; 3], [i32; 3]); 3] {
-        sums(self.vertices())
-    }
-
     /// Returns for each edge 0-1, 1-2, 2-0 the reciprocal length of the sum of the unit normals at its ends, with 17 fraction bits.
     /// Multiplied by the sum, it gives the unit normal at the midpoint.
     #[inline]
@@ -214,17 +209,6 @@ impl TriangleSetup<'_> {
         }
         let inverse = |excess: u16| (1 << (INVERSE_SUM_LENGTH - 1)) + u32::from(excess);
         [inverse(ab), inverse(bc), inverse(ca)]
-    }
-
-    /// Returns for each edge 0-1, 1-2, 2-0 the reciprocal length of the sum of the unit normals at its ends, with 24 fraction bits and at
-    /// most 1. It is more exact than [`Self::inverse_sum_lengths`], and takes longer.
-    #[cold]
-    #[inline(never)]
-    pub fn fine_inverse_sum_lengths(&self) -> [u32; 3] {
-        self.sums().map(|(_, sum)| {
-            let (mantissa, exponent) = rsqrt_wide(dot(sum, sum).max(1) as u64);
-            mantissa.checked_shr(exponent.saturating_sub(UNIT + 24)).unwrap_or(0).min(1 << 24)
-        })
     }
 
     /// The cosine N·L (Q2.30) at the corners and the [`Middles`]. Domain: one constant light, and vertices that hold cosines
