@@ -14,16 +14,14 @@ use crate::{
     features::{LIGHTS, VERTEX_COLOURS},
     format::{LEVEL, WALK},
     interpolate::{
-        Constant, Patch, Walker,
+        Constant,
         by_column::ByColumn,
         field::{Field, Nodes},
         quadric::Quadric,
     },
     lighting::{
         albedo::Albedo,
-        constant_lights::{
-            Coloured, ColouredRgb, DiffuseOnly, LitColours, OneLightRamp, OneLightRgb, Shades, SurfaceColour, WithHighlight, node,
-        },
+        constant_lights::{Coloured, ColouredRgb, DiffuseOnly, LitColours, OneLightRamp, OneLightRgb, Shades, WithHighlight, node},
         lights::Source,
         material_tables::MaterialTables,
         reflectance::{Reflectance, Reflection},
@@ -159,7 +157,7 @@ pub(crate) fn draw_any<const ROOT: IsRoot, C: Pixel>(
         && !C::GRAY
         && let Some(albedos) = setup.albedos()
     {
-        return draw_coloured::<ROOT, C>(setup, cosines, albedos, shading, tables, band);
+        return draw_coloured(setup, cosines, albedos, shading, tables, band);
     }
     let ramp = if rgb.is_some() { tables.diffuse_ramp() } else { Some(tables.one_light_ramp()?) };
     let has_no_highlight = largest(&cosines[1]) < setup.highlight_threshold(tables.reflectance);
@@ -191,9 +189,9 @@ fn draw_rgb<const ROOT: IsRoot, C: Pixel>(
     draw::<ROOT, C, _>(setup, corners, colours, shading, tables, band)
 }
 
-/// Draws as [`draw`] does, on a surface whose corners have colours, or with a texture.
+/// Draws as [`draw`] does, on a surface whose corners have colours.
 #[inline(never)]
-fn draw_coloured<const ROOT: IsRoot, C: Pixel>(
+fn draw_coloured<C: Pixel>(
     setup: &TriangleSetup<'_>,
     corners: &CornerCosines,
     albedos: &[Albedo; 3],
@@ -201,15 +199,14 @@ fn draw_coloured<const ROOT: IsRoot, C: Pixel>(
     tables: MaterialTables<'_, C>,
     band: &mut Band<'_, C>,
 ) -> Option<u32> {
-    if setup.has_texture() {
-        let texels = setup.texels()?;
-        return draw_painted::<ROOT, C, _>(setup, corners, || texels, shading, tables, band);
-    }
     if !is_plane(setup, albedos) {
         return None;
     }
     let Some(albedo) = Albedo::one(albedos) else {
-        return draw_painted::<ROOT, C, _>(setup, corners, || colour(setup, albedos), shading, tables, band);
+        return match tables.neutral_rgb() {
+            Some(colours) => draw_painted(setup, corners, colours, albedos, shading, tables, band),
+            None => draw_painted(setup, corners, ColouredRgb::of(&tables.coloured()), albedos, shading, tables, band),
+        };
     };
     let sums = &tables.painted_sums(albedo);
     let colours = OneLightRgb::of(sums);
@@ -219,32 +216,16 @@ fn draw_coloured<const ROOT: IsRoot, C: Pixel>(
         let patch = || diffuse(setup, colours.diffuse(), setup.six_at(setup.middles(), *towards));
         return Some(setup.fill(patch, LitShader::of::<DiffuseOnly>(colours, Diffuse), band));
     }
-    draw_rgb::<ROOT, C>(setup, corners, colours, shading, tables, band)
+    draw_rgb::<true, C>(setup, corners, colours, shading, tables, band)
 }
 
-/// Draws as [`draw`] does, on a surface whose `colour` changes from pixel to pixel.
+/// Draws as [`draw`] does, on a surface whose colour changes from pixel to pixel, in these `colours`.
 #[inline(always)]
-fn draw_painted<const ROOT: IsRoot, C: Pixel, P: Patch<Walker: Walker<Value: SurfaceColour>>>(
-    setup: &TriangleSetup<'_>,
-    corners: &CornerCosines,
-    colour: impl Fn() -> P,
-    shading: &Shading<'_>,
-    tables: MaterialTables<'_, C>,
-    band: &mut Band<'_, C>,
-) -> Option<u32> {
-    match tables.neutral_rgb() {
-        Some(colours) => draw_painted_in::<ROOT, C, _, P>(setup, corners, colours, colour, shading, tables, band),
-        None => draw_painted_in::<ROOT, C, _, P>(setup, corners, ColouredRgb::of(&tables.coloured()), colour, shading, tables, band),
-    }
-}
-
-/// Draws as [`draw_painted`] does, in these `colours`.
-#[inline(always)]
-fn draw_painted_in<const ROOT: IsRoot, C: Pixel, T, P: Patch<Walker: Walker<Value: SurfaceColour>>>(
+fn draw_painted<C: Pixel, T>(
     setup: &TriangleSetup<'_>,
     &[towards, half]: &CornerCosines,
     colours: T,
-    colour: impl Fn() -> P,
+    albedos: &[Albedo; 3],
     shading: &Shading<'_>,
     tables: MaterialTables<'_, C>,
     band: &mut Band<'_, C>,
@@ -255,13 +236,13 @@ where
     let light = || diffuse(setup, colours.diffuse(), setup.six_at(setup.middles(), towards));
     if setup.leaves_out_highlight(tables.reflectance, &half) {
         setup.count(band.top, &mut band.counts.without_highlight, 1);
-        return Some(setup.fill(|| (light(), colour()), LitShader::of::<Coloured<DiffuseOnly>>(colours, Diffuse), band));
+        return Some(setup.fill(|| (light(), colour(setup, albedos)), LitShader::of::<Coloured<DiffuseOnly>>(colours, Diffuse), band));
     }
     if setup.resumed(band).is_none() && !setup.gradients.walks_in_words() && !is_exact(setup, half, tables.reflectance) {
         return None;
     }
     let lookup = DefectLookup::new(shading.reflectance.table()?);
-    let patch = || ((light(), highlight::<ROOT>(setup, half, lookup, shading.exponent)), colour());
+    let patch = || ((light(), highlight::<true>(setup, half, lookup, shading.exponent)), colour(setup, albedos));
     Some(setup.fill(patch, LitShader::of::<Coloured<WithHighlight>>(colours, lookup), band))
 }
 
