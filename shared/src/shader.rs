@@ -114,7 +114,7 @@ impl<C: Pixel> Shader<C> {
         let three_channels = if M::APART && !C::GRAY && COLOURS { TriangleLoops::of::<M, true>() } else { loops };
         let method: &'static dyn Method = if needs_general::<M, C>() { &method.0 } else { method };
         let general = if needs_general::<M, C>() { TriangleLoops::of::<General, false>() } else { loops };
-        Self { method, take: M::takes, loops, three_channels, general }
+        Self { method, take: M::take, loops, three_channels, general }
     }
 
     /// The loops that draw a style.

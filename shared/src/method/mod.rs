@@ -156,16 +156,8 @@ pub(crate) trait Loops {
     /// Whether the loops leave some triangles of the styles that they take to the general loop, also without perspective and textures.
     const DECLINES: bool = true;
 
-    /// Whether there are loops for textures.
-    const TEXTURES: bool = false;
-
-    /// Whether there are loops for `style`, whatever the texture.
-    fn take(style: Style) -> bool;
-
     /// Whether there are loops for `style`.
-    fn takes(style: Style) -> bool {
-        (Self::TEXTURES || !style.has_texture) && Self::take(style)
-    }
+    fn take(style: Style) -> bool;
 
     /// Shades `setup` into `band` and returns the number of its pixels there; `None` if the general loop has to draw the triangle. `THREE` says
     /// whether the material has three channels, if loops are compiled [`Self::APART`].
@@ -191,7 +183,6 @@ pub(crate) struct General;
 
 impl Loops for General {
     const GENERAL: bool = true;
-    const TEXTURES: bool = true;
 
     fn take(_: Style) -> bool {
         true

@@ -185,8 +185,6 @@ impl<const QUADRATICS: bool> Method for Auto<QUADRATICS> {
 
 impl<const QUADRATICS: bool> Loops for Auto<QUADRATICS> {
     const APART: bool = true;
-    const TEXTURES: bool = true;
-
     fn take(style: Style) -> bool {
         Phong::take(style) || style.is_near && style.is_plain
     }

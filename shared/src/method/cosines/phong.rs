@@ -59,8 +59,6 @@ impl Method for Phong {
 }
 
 impl Loops for Phong {
-    const TEXTURES: bool = true;
-
     fn take(style: Style) -> bool {
         duff::take(style) || near::take(style)
     }

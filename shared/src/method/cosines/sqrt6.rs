@@ -121,7 +121,7 @@ pub(crate) fn shade_constant<const ROOT: IsRoot>(
 
 impl Loops for Sqrt6 {
     fn take(style: Style) -> bool {
-        style.is_plain && (style.lights == 1 || style.lights == 2 && !style.is_coloured)
+        style.is_plain && !style.has_texture && (style.lights == 1 || style.lights == 2 && !style.is_coloured)
     }
 
     #[inline(always)]

@@ -41,8 +41,6 @@ impl Method for Flat {
 
 impl Loops for Flat {
     const DECLINES: bool = false;
-    const TEXTURES: bool = true;
-
     fn take(style: Style) -> bool {
         style.is_plain
     }

@@ -59,8 +59,6 @@ impl Method for Gouraud {
 impl Loops for Gouraud {
     const APART: bool = true;
     const DECLINES: bool = false;
-    const TEXTURES: bool = true;
-
     fn take(style: Style) -> bool {
         style.is_plain
     }

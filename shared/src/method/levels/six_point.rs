@@ -39,8 +39,6 @@ impl Method for SixPoint {
 }
 
 impl Loops for SixPoint {
-    const TEXTURES: bool = true;
-
     fn take(style: Style) -> bool {
         style.is_plain
     }
