@@ -110,6 +110,7 @@ impl<'a> DefectLookup<'a> {
 mod tests {
     use super::*;
     use crate::math::highlight_lut::{Highlight, HighlightCurve, NEAREST_ERROR};
+    use zerocopy::FromZeros;
 
     /// Largest error of `at` against x^n: next to entries, and half way between two of them.
     fn error(n: u16, curve: &HighlightCurve, at: impl Fn(i32) -> u32) -> f64 {
@@ -126,7 +127,7 @@ mod tests {
     #[test]
     fn entries_are_the_nearest() {
         for n in (1..12).chain([20, 50, 127, 128, 500, 1023, 1024]) {
-            let (mut lut, curve) = (HighlightLut::EMPTY, HighlightCurve::new(n, Highlight::Half, 1 << 16, 0));
+            let (mut lut, curve) = (HighlightLut::new_zeroed(), HighlightCurve::new(n, Highlight::Half, 1 << 16, 0));
             lut.fill(&curve);
             let quotients = QuotientLookup::new(&lut);
             for length in [1.0, 0.9, 0.77, 0.6, 0.5] {

@@ -218,9 +218,6 @@ fn interpolated([a, b]: [u16; 2], position: u32, floor: u16) -> u32 {
 }
 
 impl HighlightLut {
-    /// An empty table for static memory. It is all zeros, so that it takes no flash.
-    pub const EMPTY: Self = Self { table: [0; SIZE + 1], scale: 0, floor: 0 };
-
     /// Computes the table of a curve.
     pub fn fill(&mut self, curve: &HighlightCurve) {
         (self.scale, self.floor) = (curve.scale().get(), curve.floor);
@@ -287,6 +284,7 @@ pub const NEAREST_ERROR: f64 = 1.0e-3;
 #[cfg(test)]
 mod tests {
     use super::*;
+    use zerocopy::FromZeros;
 
     #[test]
     fn roots_are_exact() {
@@ -306,7 +304,7 @@ mod tests {
                 if n >> base.roots() == 0 {
                     continue;
                 }
-                let (mut lut, curve) = (HighlightLut::EMPTY, HighlightCurve::new(n, base, full, floor));
+                let (mut lut, curve) = (HighlightLut::new_zeroed(), HighlightCurve::new(n, base, full, floor));
                 lut.fill(&curve);
                 let (mut at, mut nearest) = (0f64, 0f64);
                 let step = 2f64.powi(30) - f64::from(curve.highlight_threshold());
