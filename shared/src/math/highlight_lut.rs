@@ -47,11 +47,10 @@ pub struct HighlightLut {
 
 /// The quantity x by which a table is looked up. A base that follows from it is raised to the exponent `n` of a material. Each is scaled so that all
 /// methods give highlights of one width.
-#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
 #[repr(u32)]
 pub enum Highlight {
     /// The cosine of normal and half vector: (N·H)^n (Blinn 1977). The base is x.
-    #[default]
     Half,
     /// The square of this cosine: ((N·H)²)^(n/2). The base is the square root of x.
     HalfSquared,
