@@ -3,85 +3,62 @@
 //! Most code asks the constants of this file in plain conditions. The compiler then checks it with every choice of features, and drops what a program
 //! lacks. Functions that would have no effect are left out by `#[cfg]`.
 
-/// A cargo feature that some mesh files need.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub enum Feature {
-    /// Movements of objects, lights and the camera that the mesh file contains. A camera that orbits needs no feature.
-    Animation,
-    /// Lines along outlines.
-    Antialias,
-    /// Materials that reflect more than one colour, for example a white highlight on a red surface.
-    Colours,
-    /// More than one light.
-    Lights,
-    /// Point lights with a range or a cone, and light from the sky.
-    LightShapes,
-    /// Point lights, and highlights as seen from a camera that is not infinitely far.
-    NearLights,
-    /// More than one object.
-    Objects,
-    /// Labels, which are texts over the picture.
-    Text,
-    /// Textures.
-    Textures,
-    /// Surfaces that let through a part of what is behind them, and holes in textures.
-    Transparency,
-    /// Meshes with colours at the corners of their triangles.
-    VertexColours,
+/// The features that some mesh files need: the name of each in the code, and in `Cargo.toml`.
+macro_rules! features {
+    ($(#[$doc:meta] $feature:ident = $name:literal,)+) => {
+        /// A cargo feature that some mesh files need.
+        #[derive(Clone, Copy, Debug, PartialEq, Eq)]
+        pub enum Feature {
+            $(#[$doc] $feature,)+
+        }
+
+        impl Feature {
+            /// All features that a mesh file can need.
+            pub const ALL: [Self; 11] = [$(Self::$feature),+];
+
+            /// The name of the feature in `Cargo.toml`.
+            #[must_use]
+            pub const fn name(self) -> &'static str {
+                match self {
+                    $(Self::$feature => $name,)+
+                }
+            }
+
+            /// Whether the program has the feature.
+            #[inline]
+            #[must_use]
+            pub const fn is_on(self) -> bool {
+                match self {
+                    $(Self::$feature => cfg!(feature = $name),)+
+                }
+            }
+        }
+    };
 }
 
-impl Feature {
-    /// All features that a mesh file can need.
-    pub const ALL: [Self; 11] = [
-        Self::Animation,
-        Self::Antialias,
-        Self::Colours,
-        Self::Lights,
-        Self::LightShapes,
-        Self::NearLights,
-        Self::Objects,
-        Self::Text,
-        Self::Textures,
-        Self::Transparency,
-        Self::VertexColours,
-    ];
-
-    /// The name of the feature in `Cargo.toml`.
-    #[must_use]
-    pub const fn name(self) -> &'static str {
-        match self {
-            Self::Animation => "animation",
-            Self::Antialias => "antialias",
-            Self::Colours => "colours",
-            Self::Lights => "lights",
-            Self::LightShapes => "light-shapes",
-            Self::NearLights => "near-lights",
-            Self::Objects => "objects",
-            Self::Text => "text",
-            Self::Textures => "textures",
-            Self::Transparency => "transparency",
-            Self::VertexColours => "vertex-colours",
-        }
-    }
-
-    /// Whether the program has the feature.
-    #[inline]
-    #[must_use]
-    pub const fn is_on(self) -> bool {
-        match self {
-            Self::Animation => cfg!(feature = "animation"),
-            Self::Antialias => cfg!(feature = "antialias"),
-            Self::Colours => cfg!(feature = "colours"),
-            Self::Lights => cfg!(feature = "lights"),
-            Self::LightShapes => cfg!(feature = "light-shapes"),
-            Self::NearLights => cfg!(feature = "near-lights"),
-            Self::Objects => cfg!(feature = "objects"),
-            Self::Text => cfg!(feature = "text"),
-            Self::Textures => cfg!(feature = "textures"),
-            Self::Transparency => cfg!(feature = "transparency"),
-            Self::VertexColours => cfg!(feature = "vertex-colours"),
-        }
-    }
+features! {
+    /// Movements of objects, lights and the camera that the mesh file contains. A camera that orbits needs no feature.
+    Animation = "animation",
+    /// Lines along outlines.
+    Antialias = "antialias",
+    /// Materials that reflect more than one colour, for example a white highlight on a red surface.
+    Colours = "colours",
+    /// More than one light.
+    Lights = "lights",
+    /// Point lights with a range or a cone, and light from the sky.
+    LightShapes = "light-shapes",
+    /// Point lights, and highlights as seen from a camera that is not infinitely far.
+    NearLights = "near-lights",
+    /// More than one object.
+    Objects = "objects",
+    /// Labels, which are texts over the picture.
+    Text = "text",
+    /// Textures.
+    Textures = "textures",
+    /// Surfaces that let through a part of what is behind them, and holes in textures.
+    Transparency = "transparency",
+    /// Meshes with colours at the corners of their triangles.
+    VertexColours = "vertex-colours",
 }
 
 pub(crate) const ANIMATION: bool = Feature::Animation.is_on();
