@@ -1,8 +1,7 @@
 //! Errors of a renderer.
 
 use crate::{
-    features::Feature,
-    scene::{NO_EDGE_MEMORY, NO_NEIGHBOURS, NoEdges},
+    scene::{NO_EDGE_MEMORY, NO_NEIGHBOURS},
     setup::edge::COLUMNS,
 };
 use core::fmt;
@@ -146,13 +145,3 @@ impl fmt::Display for RenderError {
 }
 
 impl core::error::Error for RenderError {}
-
-impl From<NoEdges> for RenderError {
-    fn from(reason: NoEdges) -> Self {
-        match reason {
-            NoEdges::Feature => Self::Feature { name: Feature::Antialias.name() },
-            NoEdges::Memory => Self::AntialiasMemory,
-            NoEdges::Neighbours => Self::Neighbours,
-        }
-    }
-}

@@ -12,7 +12,7 @@ use crate::{
     method::{Facts, Method},
     pixel::{Channels, Pixel, gamma::Gamma, ramps::Ramps},
     placement::{Placements, Placing},
-    scene::{Limits, Scene},
+    scene::{Limits, Scene, SceneError},
     shader::Shader,
     stream::record::{Camera, Light, Material, PERSPECTIVE, POINT},
 };
@@ -122,8 +122,9 @@ impl<'a, C: Pixel> Renderer<'a, C> {
         let has_edge_memory = features::ANTIALIAS && !memory.smoothing.marks.is_empty();
         let limits = limits(shader.facts(), false);
         let scene = Scene::new(stream, materials, objects, has_edge_memory, limits, Channels::of::<C>());
-        if features::ANTIALIAS && scene.outlines().is_some() {
-            scene.check_edges()?;
+        // A checked stream that states lines has the neighbours of its triangles.
+        if features::ANTIALIAS && scene.outlines().is_some() && !has_edge_memory {
+            return Err(RenderError::AntialiasMemory);
         }
         let colours = ColourSettings { shader, dither: true, gamma: None };
         Ok(Self {
@@ -290,7 +291,11 @@ impl<'a, C: Pixel> Renderer<'a, C> {
     /// - Returns [`RenderError::Neighbours`] if the stream (mesh file) was written without `--antialias`.
     pub fn set_antialias(&mut self, antialias: bool) -> Result<(), RenderError> {
         if antialias {
-            self.scene.check_edges()?;
+            self.scene.check_edges().map_err(|reason| match reason {
+                SceneError::Feature { name } => RenderError::Feature { name },
+                SceneError::Neighbours => RenderError::Neighbours,
+                _ => RenderError::AntialiasMemory,
+            })?;
         }
         self.settings.antialias = antialias;
         self.scene.set_view_changed();

@@ -1,6 +1,5 @@
 //! Errors of changes to a scene.
 
-use crate::features::Feature;
 use core::fmt;
 
 /// The reason why a [`Scene`](crate::Scene), a [`Pose`](crate::Pose) or a [`Light`](crate::Light) cannot have the values that a program
@@ -98,25 +97,3 @@ impl core::error::Error for SceneError {}
 pub(crate) const NO_EDGE_MEMORY: &str = "the layout has no memory for outlines; set Layout::antialias(true)";
 /// What `Neighbours` says.
 pub(crate) const NO_NEIGHBOURS: &str = "the stream has no neighbours of triangles; make it with `microphong convert --antialias`";
-
-/// The reason why edges cannot be found, to be smoothed or to be drawn as lines. The first is a setting of the renderer, the second belongs to the
-/// scene.
-#[derive(Clone, Copy, Debug)]
-pub(crate) enum NoEdges {
-    /// The program lacks the cargo feature.
-    Feature,
-    /// The layout has no room.
-    Memory,
-    /// The stream does not say which triangles are neighbours.
-    Neighbours,
-}
-
-impl From<NoEdges> for SceneError {
-    fn from(reason: NoEdges) -> Self {
-        match reason {
-            NoEdges::Feature => Self::Feature { name: Feature::Antialias.name() },
-            NoEdges::Memory => Self::AntialiasMemory,
-            NoEdges::Neighbours => Self::Neighbours,
-        }
-    }
-}

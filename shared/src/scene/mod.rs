@@ -36,7 +36,7 @@ pub use angle::SIN_COS_ERROR;
 pub use background::Background;
 pub(crate) use bounding_volume::BoundingVolume;
 pub use error::SceneError;
-pub(crate) use error::{NO_EDGE_MEMORY, NO_NEIGHBOURS, NoEdges};
+pub(crate) use error::{NO_EDGE_MEMORY, NO_NEIGHBOURS};
 pub(crate) use light_terms::{Colour, LightTerms, largest};
 pub use object::Object;
 pub use orbit::{ORBIT_ERROR, ROTATION_ERROR};
@@ -502,15 +502,13 @@ impl<'a> Scene<'a> {
     }
 
     /// Checks that edges can be found, to be smoothed or to be drawn as lines.
-    pub(crate) fn check_edges(&self) -> Result<(), NoEdges> {
-        if !ANTIALIAS {
-            return Err(NoEdges::Feature);
-        }
+    pub(crate) fn check_edges(&self) -> Result<(), SceneError> {
+        require(Feature::Antialias, true)?;
         if !self.has_edge_memory {
-            return Err(NoEdges::Memory);
+            return Err(SceneError::AntialiasMemory);
         }
         if self.stream.neighbours.is_empty() && !self.stream.triangles.is_empty() {
-            return Err(NoEdges::Neighbours);
+            return Err(SceneError::Neighbours);
         }
         Ok(())
     }
