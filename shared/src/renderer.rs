@@ -403,7 +403,7 @@ impl<'a, C: Pixel> Renderer<'a, C> {
 
     /// Places what has moved, and computes tables that are stale.
     fn place(&mut self) {
-        if !self.scene.is_unchanged() {
+        if self.scene.repainted {
             self.fill_tables();
         }
         // Everything is drawn where colours have changed, or the view has.

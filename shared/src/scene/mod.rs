@@ -103,11 +103,11 @@ pub struct Scene<'a> {
     limits: Limits,
     /// Properties of the pixel format.
     channels: Channels,
-    /// Whether something has changed since the latest frame, and whether all objects are seen otherwise, or there are others.
-    changed: bool,
-    pub(crate) view_changed: bool,
-    /// Whether something other than the place of single objects has changed.
+    /// Whether something other than the place of single objects has changed since the latest frame. Objects know themselves whether they have moved.
     pub(crate) repainted: bool,
+    /// Whether all objects are seen otherwise than in the latest frame.
+    pub(crate) view_changed: bool,
+    /// Whether there are other objects than in the latest frame.
     pub(crate) rearranged: bool,
 }
 
@@ -143,9 +143,8 @@ impl<'a> Scene<'a> {
             count: 0,
             limits,
             channels,
-            changed: true,
-            view_changed: true,
             repainted: true,
+            view_changed: true,
             rearranged: true,
         };
         // A renderer is refused where the stream has more objects than there is room for.
@@ -199,7 +198,7 @@ impl<'a> Scene<'a> {
             OBJECT_TRACK => {
                 if let Ok(object) = self.object(index) {
                     let pose = if is_hidden { object.pose } else { pose };
-                    self.changed |= object.place(pose, is_hidden);
+                    object.place(pose, is_hidden);
                 }
             }
             LIGHT_TRACK => {
@@ -233,24 +232,18 @@ impl<'a> Scene<'a> {
     /// Returns `true` if the scene has not changed since the frame that was drawn last.
     #[must_use]
     pub fn is_unchanged(&self) -> bool {
-        !self.changed
+        !self.repainted && self.objects().iter().all(|object| object.has_moved == 0)
     }
 
     /// Marks the scene as drawn.
     pub(crate) fn set_drawn(&mut self) {
-        (self.changed, self.view_changed, self.rearranged, self.repainted) = (false, false, false, false);
+        (self.repainted, self.view_changed, self.rearranged) = (false, false, false);
         self.objects.iter_mut().for_each(|object| object.has_moved = 0);
-    }
-
-    /// Marks colours as changed.
-    fn set_repainted(&mut self) {
-        (self.changed, self.repainted) = (true, true);
     }
 
     /// Marks the whole picture as changed, because of a setting or of the camera.
     pub(crate) fn set_view_changed(&mut self) {
-        self.view_changed = true;
-        self.set_repainted();
+        (self.view_changed, self.repainted) = (true, true);
     }
 
     /// Returns the objects in the order of their indices. Where surfaces of two objects lie at exactly equal depth, the object whose origin
@@ -339,8 +332,7 @@ impl<'a> Scene<'a> {
     /// Returns [`SceneError::Object`] if there is no object with this index.
     pub fn set_pose(&mut self, index: usize, pose: Pose) -> Result<(), SceneError> {
         let object = self.object(index)?;
-        let hidden = object.hidden != 0;
-        self.changed |= object.place(pose, hidden);
+        object.place(pose, object.hidden != 0);
         Ok(())
     }
 
@@ -350,8 +342,7 @@ impl<'a> Scene<'a> {
     /// Returns [`SceneError::Object`] if there is no object with this index.
     pub fn set_visible(&mut self, index: usize, visible: bool) -> Result<(), SceneError> {
         let object = self.object(index)?;
-        let pose = object.pose;
-        self.changed |= object.place(pose, !visible);
+        object.place(object.pose, !visible);
         Ok(())
     }
 
@@ -367,7 +358,7 @@ impl<'a> Scene<'a> {
         }
         self.object(index)?.material = material;
         self.exchange_materials();
-        self.set_repainted();
+        self.repainted = true;
         Ok(())
     }
 
@@ -392,7 +383,7 @@ impl<'a> Scene<'a> {
             return Err(SceneError::Exponent { least });
         }
         *self.materials.get_mut(index).ok_or(SceneError::Material { index })? = SceneMaterial { material, is_stale: 1 };
-        self.set_repainted();
+        self.repainted = true;
         Ok(())
     }
 
@@ -409,7 +400,7 @@ impl<'a> Scene<'a> {
     /// Marks the tables of all materials as stale, so that the next frame computes them again.
     pub(crate) fn set_stale(&mut self) {
         self.materials.iter_mut().for_each(|slot| slot.is_stale = 1);
-        self.set_repainted();
+        self.repainted = true;
     }
 
     /// Returns the lights, each of which shines on all objects.
@@ -471,7 +462,7 @@ impl<'a> Scene<'a> {
     /// Sets the background: one colour as `[red, green, blue]`, each 0 to 255, or a [`Background::Gradient`].
     pub fn set_background(&mut self, background: impl Into<Background>) {
         self.background = background.into();
-        self.set_repainted();
+        self.repainted = true;
     }
 
     /// Returns the lines along outlines, or `None` if there are none.

@@ -97,12 +97,10 @@ impl Object {
         self.hidden == 0
     }
 
-    /// Moves, shows or hides the object. Returns whether this changes it.
-    pub(crate) fn place(&mut self, pose: Pose, hidden: bool) -> bool {
-        let moves = (self.pose, self.hidden) != (pose, hidden.into());
+    /// Moves, shows or hides the object.
+    pub(crate) fn place(&mut self, pose: Pose, hidden: bool) {
+        self.has_moved |= u32::from((self.pose, self.hidden) != (pose, hidden.into()));
         (self.pose, self.hidden) = (pose, hidden.into());
-        self.has_moved |= u32::from(moves);
-        moves
     }
 
     /// Index of the material of `mesh` on this object.
