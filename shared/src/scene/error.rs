@@ -1,6 +1,7 @@
 //! Errors of changes to a scene.
 
 use core::fmt;
+use fixed::traits::{Fixed, ToFixed};
 
 /// The reason why a [`Scene`](crate::Scene), a [`Pose`](crate::Pose) or a [`Light`](crate::Light) cannot have the values that a program
 /// asks for. A scene that returns this error stays unchanged.
@@ -92,6 +93,18 @@ impl fmt::Display for SceneError {
 }
 
 impl core::error::Error for SceneError {}
+
+/// Numbers in the format `F`, or `error` if one does not fit or is not finite.
+pub(crate) fn in_format<F: Fixed, N: ToFixed, const COUNT: usize>(
+    numbers: [N; COUNT],
+    error: SceneError,
+) -> Result<[F; COUNT], SceneError> {
+    let mut fixed = [F::ZERO; COUNT];
+    for (fixed, number) in fixed.iter_mut().zip(numbers) {
+        *fixed = number.checked_to_fixed().ok_or(error)?;
+    }
+    Ok(fixed)
+}
 
 /// What `AntialiasMemory` says.
 pub(crate) const NO_EDGE_MEMORY: &str = "the layout has no memory for outlines; set Layout::antialias(true)";

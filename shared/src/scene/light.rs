@@ -9,7 +9,7 @@ use crate::{
 use crate::{
     format::{Gain, Length, UNIT},
     math::vector::normalise,
-    scene::{SceneError, in_range},
+    scene::{SceneError, error::in_format, in_range},
     stream::record::{DIRECTIONAL, EYE_SPACE, Light, OBJECT_SPACE, POINT},
 };
 use fixed::{traits::ToFixed, types::I32F32};
@@ -70,11 +70,7 @@ impl Light {
     /// # Errors
     /// Returns [`SceneError::Position`] or [`SceneError::Range`] if a number is not finite or out of range.
     pub fn near<V: ToFixed, C: ToFixed>(position: [V; 3], colour: [C; 3]) -> Result<Self, SceneError> {
-        let mut place = [Length::ZERO; 3];
-        for (length, number) in place.iter_mut().zip(position) {
-            *length = number.checked_to_fixed().ok_or(SceneError::Position)?;
-        }
-        checked(Self::new(POINT, OBJECT_SPACE, place, gains(colour)?))
+        checked(Self::new(POINT, OBJECT_SPACE, in_format(position, SceneError::Position)?, gains(colour)?))
     }
 
     /// Gives a point light a range, from 1/16 to less than 32 units of the world. At the distance d its light is (1 - d²/range²)² of what it is
@@ -138,10 +134,7 @@ impl Light {
 
 /// The unit vector in a direction of any length but zero, each component a [`Unit`](crate::format::Unit).
 fn direction<V: ToFixed>(towards: [V; 3]) -> Result<[i32; 3], SceneError> {
-    let mut vector = [0i64; 3];
-    for (bits, number) in vector.iter_mut().zip(towards) {
-        *bits = number.checked_to_fixed::<I32F32>().ok_or(SceneError::Direction)?.to_bits();
-    }
+    let vector = in_format(towards, SceneError::Direction)?.map(I32F32::to_bits);
     // Components of at most 30 bits.
     let largest = vector.iter().fold(0, |largest, c| largest | c.unsigned_abs());
     let less = 34u32.saturating_sub(largest.leading_zeros());
@@ -158,11 +151,7 @@ fn checked(light: Light) -> Result<Light, SceneError> {
 }
 
 fn gains<C: ToFixed>(colour: [C; 3]) -> Result<[Gain; 3], SceneError> {
-    let mut gains = [Gain::ZERO; 3];
-    for (gain, number) in gains.iter_mut().zip(colour) {
-        *gain = number.checked_to_fixed().ok_or(SceneError::Range { name: "light colour" })?;
-    }
-    Ok(gains)
+    in_format(colour, SceneError::Range { name: "light colour" })
 }
 
 #[cfg(test)]

@@ -7,7 +7,10 @@ use crate::{
         rsqrt::rsqrt_wide,
         vector::{cross, dot, normalise, sub, zip},
     },
-    scene::{angle::sin_cos, error::SceneError},
+    scene::{
+        angle::sin_cos,
+        error::{SceneError, in_format},
+    },
     stream::{
         self,
         record::{Key, MAX_POSITION},
@@ -162,16 +165,9 @@ impl Pose {
     /// Returns [`SceneError::Rotation`] if the quaternion is zero or one of its numbers is not finite or 2 or more in size. Returns
     /// [`SceneError::Position`] or [`SceneError::Scale`] if the position or the scale is out of range or not finite.
     pub fn from_f32(quaternion: [f32; 4], position: [f32; 3], scale: f32) -> Result<Self, SceneError> {
-        let mut rotation = [0; 4];
-        for (bits, number) in rotation.iter_mut().zip(quaternion) {
-            *bits = Rotation::checked_from_num(finite(number).ok_or(SceneError::Rotation)?).ok_or(SceneError::Rotation)?.to_bits().into();
-        }
-        let mut place = [Length::ZERO; 3];
-        for (length, number) in place.iter_mut().zip(position) {
-            *length = finite(number).and_then(Length::checked_from_num).ok_or(SceneError::Position)?;
-        }
-        let scale = finite(scale).and_then(Scale::checked_from_num).ok_or(SceneError::Scale)?;
-        Self::rotated(rotation)?.at(place)?.scaled(scale)
+        let (quaternion, position) = (in_format(quaternion, SceneError::Rotation)?, in_format(position, SceneError::Position)?);
+        let scale = Scale::checked_from_num(scale).ok_or(SceneError::Scale)?;
+        Self::from_quaternion(quaternion)?.at(position)?.scaled(scale)
     }
 
     /// Returns a copy of this pose at another position, in world units.
@@ -272,11 +268,6 @@ impl Default for Pose {
     fn default() -> Self {
         Self::IDENTITY
     }
-}
-
-/// Returns the number if it is finite. Conversions of other numbers panic.
-fn finite(number: f32) -> Option<f32> {
-    number.is_finite().then_some(number)
 }
 
 /// The unit quaternion along another one; `None` if that is zero.
