@@ -104,14 +104,9 @@ impl Pose {
             [xz - zx, xy + yx, one - xx + yy - zz, yz + zy],
             [yx - xy, zx + xz, yz + zy, one - xx - yy + zz],
         ];
-        let mut longest = (0, [0; 4]);
-        for (k, candidate) in candidates.into_iter().enumerate() {
-            let size = candidate.get(k).copied().unwrap_or(0);
-            if size > longest.0 {
-                longest = (size, candidate);
-            }
-        }
-        Self::rotated(longest.1)
+        // Of equally long ones the first.
+        let longest = candidates.into_iter().enumerate().rev().max_by_key(|(k, candidate)| candidate.get(*k).copied());
+        Self::rotated(longest.map_or([0; 4], |(_, candidate)| candidate))
     }
 
     /// Creates a pose at the origin, rotated by `angle` (in turns, 0 to 1) about `axis`, which may have any length but zero. The object
