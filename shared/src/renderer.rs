@@ -10,7 +10,7 @@ use crate::{
     lighting::{highlight_tables, lights::Directions, material_tables::fill_ramps, reflectance::LitMaterial},
     memory::{Layout, Memory, take_ramps},
     method::{Facts, Method},
-    pixel::{Channels, Pixel, gamma::Gamma, ramps::Ramps},
+    pixel::{Channels, Output, Pixel, gamma::Gamma, ramps::Ramps},
     placement::{Placements, Placing},
     scene::{Limits, Scene, SceneError},
     shader::Shader,
@@ -126,7 +126,7 @@ impl<'a, C: Pixel> Renderer<'a, C> {
         if features::ANTIALIAS && scene.outlines().is_some() && !has_edge_memory {
             return Err(RenderError::AntialiasMemory);
         }
-        let colours = ColourSettings { shader, dither: true, gamma: None };
+        let colours = ColourSettings { shader, output: Output { dither: true, gamma: None } };
         Ok(Self {
             settings,
             colours,
@@ -167,7 +167,7 @@ impl<'a, C: Pixel> Renderer<'a, C> {
     #[inline(never)]
     fn fill_tables(&mut self) {
         let Self { settings, colours, ramps, scene, memory: Memory { reflectances, tables, error_bounds, .. }, .. } = self;
-        let (method, ColourSettings { dither, gamma, .. }) = (settings.method, colours);
+        let (method, Output { dither, gamma }) = (settings.method, colours.output);
         let (facts, ambient, is_viewer_near) = (method.facts(), scene.ambient, features::NEAR_LIGHTS && scene.camera.has_local_viewer());
         let mut lights: heapless::Vec<Light, MAX_LIGHTS> = heapless::Vec::from_slice(scene.lights()).unwrap_or_default();
         if !features::LIGHTS && lights.is_empty() {
@@ -185,7 +185,7 @@ impl<'a, C: Pixel> Renderer<'a, C> {
                     (facts.highlight, facts.highlight_levels),
                     [scene.is_coloured(index), is_viewer_near],
                 );
-                fill_ramps::<C>(ramps, reflectance, *dither, *gamma);
+                fill_ramps::<C>(ramps, reflectance, dither, gamma);
             }
         }
         for (index, material) in scene.stale_materials() {
@@ -193,7 +193,7 @@ impl<'a, C: Pixel> Renderer<'a, C> {
             let (Some(reflectance), Some(bounds)) = (reflectances.get_mut(index), error_bounds.get_mut(index)) else { continue };
             let table = reflectance.table(tables);
             *bounds = method.error_bounds(LitMaterial::new(reflectance, table), material.exponent, lights.len());
-            if *dither && C::Ramps::CHECKERED {
+            if dither && C::Ramps::CHECKERED {
                 reflectance.dither();
             }
             #[cfg(feature = "skips")]
@@ -264,7 +264,7 @@ impl<'a, C: Pixel> Renderer<'a, C> {
     /// [`LightGray`](crate::pixel::LightGray) by 64 thresholds in squares of 8x8 pixels. Neither changes the time of a frame. Pixels of eight bits a
     /// channel need no dither.
     pub fn set_dither(&mut self, dither: bool) {
-        self.colours.dither = dither;
+        self.colours.output.dither = dither;
         self.scene.set_stale();
     }
 
@@ -276,7 +276,7 @@ impl<'a, C: Pixel> Renderer<'a, C> {
     /// for materials whose colours are multiples of one another; methods that look up highlights need one light for that. All else takes several times
     /// as long.
     pub fn set_gamma(&mut self, gamma: Option<&'static Gamma>) {
-        self.colours.gamma = gamma;
+        self.colours.output.gamma = gamma;
         self.scene.set_stale();
     }
 

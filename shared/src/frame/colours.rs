@@ -3,7 +3,7 @@
 use crate::{
     frame::context::{Context, PlacedMesh},
     mesh::Drawing,
-    pixel::{Output, Pixel, gamma::Gamma},
+    pixel::{Output, Pixel},
     shader::{Shader, TriangleLoops},
 };
 
@@ -11,9 +11,8 @@ use crate::{
 #[derive(Debug)]
 pub(crate) struct ColourSettings<C: Pixel> {
     pub(crate) shader: Shader<C>,
-    pub(crate) dither: bool,
-    /// The curve of the display.
-    pub(crate) gamma: Option<&'static Gamma>,
+    /// Dither and the curve of the display, also for the pass that makes pixels of the display of a finished band.
+    pub(crate) output: Output,
 }
 
 /// How light becomes pixels in one frame.
@@ -25,12 +24,6 @@ pub(crate) struct Colours<'r, C: Pixel> {
 }
 
 impl<'r, C: Pixel> Colours<'r, C> {
-    /// The pass that makes pixels of the display of a finished band.
-    pub(crate) fn output(&self) -> Output {
-        let &ColourSettings { dither, gamma, .. } = self.settings;
-        Output { dither, gamma }
-    }
-
     /// What the triangles of `placed` have in common in a band of which these `columns` are wanted, and the loops that draw them.
     #[inline(never)]
     pub(crate) fn drawing<'s>(
@@ -39,9 +32,9 @@ impl<'r, C: Pixel> Colours<'r, C> {
         placed: &PlacedMesh<'s>,
         columns: [u16; 2],
     ) -> Option<(Drawing<'s, C>, TriangleLoops<C>)> {
-        let ColourSettings { shader, dither, gamma } = self.settings;
+        let ColourSettings { shader, output } = self.settings;
         let (pass, ramps) = (context.pass(placed, columns)?, self.ramps.get(placed.material)?);
-        let drawing = Drawing { pass, ramps, dither: *dither, gamma: *gamma };
+        let drawing = Drawing { pass, ramps, output: *output };
         let loops = shader.loops(drawing.style());
         Some((drawing, loops))
     }

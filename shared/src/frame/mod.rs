@@ -69,7 +69,7 @@ impl<'r, C: Pixel> Frame<'r, C> {
     /// [`Light`](crate::pixel::Light) or [`LightGray`](crate::pixel::LightGray).
     #[must_use]
     pub fn output(&self) -> Output {
-        self.colours.output()
+        self.colours.settings.output
     }
 
     /// Returns the rectangle that the frame draws, in pixels of the picture. It is the whole picture, unless
@@ -186,6 +186,6 @@ impl<C: Pixel> FramePart<'_, '_, C> {
     /// Returns the pass that makes pixels of the display of a finished band. See [`Frame::output`].
     #[must_use]
     pub fn output(&self) -> Output {
-        self.colours.output()
+        self.colours.settings.output
     }
 }

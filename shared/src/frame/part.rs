@@ -288,7 +288,7 @@ impl<'r> FrameRows<'r> {
         let start = (known.start + 1 - top) as usize * row;
         let depth = self.depth.get(start..start + (known.end - known.start) as usize * row).unwrap_or_default();
         let band = SmoothedBand { width: row, rows: top..bottom, known, depth };
-        self.smoother.smooth(context, pixels, &band, colours.output().gamma);
+        self.smoother.smooth(context, pixels, &band, colours.settings.output.gamma);
         self.smoother.hold(bottom);
         // The depth of the last row and of the one below it comes first in the next band.
         for at in [0, row] {

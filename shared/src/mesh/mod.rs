@@ -9,7 +9,7 @@ use crate::{
     geometry::bin::{TriangleKey, Walk},
     lighting::material_tables::MaterialTables,
     method::{DrawTriangle, General, Loops, Shading, Style, TriangleSetup, cosines::near, needs_general, tiles},
-    pixel::{Pixel, gamma::Gamma},
+    pixel::{Output, Pixel},
     raster::{
         band::Band,
         canvas::{BandCanvas, Colourist},
@@ -26,9 +26,7 @@ pub(crate) struct Drawing<'f, C: Pixel> {
     pub(crate) pass: MeshPass<'f>,
     /// The tables of colours of the material.
     pub(crate) ramps: &'f C::Ramps,
-    pub(crate) dither: bool,
-    /// The curve of the display.
-    pub(crate) gamma: Option<&'static Gamma>,
+    pub(crate) output: Output,
 }
 
 impl<C: Pixel> Drawing<'_, C> {
@@ -39,12 +37,12 @@ impl<C: Pixel> Drawing<'_, C> {
     /// How the surface of `mesh` lets through what is behind it.
     #[inline(always)]
     pub(crate) fn glass(&self, mesh: &Mesh) -> Option<Glass> {
-        mesh.is_transparent().then(|| Glass::new(mesh.transparency(), self.gamma))
+        mesh.is_transparent().then(|| Glass::new(mesh.transparency(), self.output.gamma))
     }
 
     /// What makes pixels of intensities.
     fn colourist(&self) -> Colourist<'_, C> {
-        Colourist::new(self.tables(), self.dither, self.gamma)
+        Colourist::new(self.tables(), self.output.dither, self.output.gamma)
     }
 
     /// How the triangles of the mesh are drawn.
