@@ -297,12 +297,6 @@ pub(crate) struct Smoothing<'a> {
     pub(crate) colours: &'a mut [u8],
 }
 
-/// Takes the tables of colours of all materials from `words`. Returns them and the bytes behind them, or `None` if there are fewer words than
-/// [`Layout::words`].
-pub(crate) fn take_ramps<'a, C: Pixel>(layout: &Layout, words: &'a mut [u64]) -> Option<(&'a mut [C::Ramps], &'a mut [u8])> {
-    take(words.as_mut_bytes(), layout.materials)
-}
-
 impl<'a> Memory<'a> {
     /// Divides the `bytes` behind the tables of colours into the parts of the memory and the room for objects and materials of the scene. Returns
     /// `None` if there are fewer than [`Layout::words`] says. A colour takes `stored` bytes.
@@ -333,8 +327,8 @@ impl<'a> Memory<'a> {
     }
 }
 
-/// Takes `count` values from the front; returns them and the bytes behind them.
-fn take<T: FromBytes + IntoBytes + Immutable + KnownLayout>(bytes: &mut [u8], count: usize) -> Option<(&mut [T], &mut [u8])> {
+/// Takes `count` values from the front; returns them and the bytes behind them, or `None` if there are fewer.
+pub(crate) fn take<T: FromBytes + IntoBytes + Immutable + KnownLayout>(bytes: &mut [u8], count: usize) -> Option<(&mut [T], &mut [u8])> {
     let (part, rest) = bytes.split_at_mut_checked(padded(count.checked_mul(size_of::<T>())?))?;
     let (values, _) = <[T]>::mut_from_prefix_with_elems(part, count).ok()?;
     Some((values, rest))

@@ -8,7 +8,7 @@ use crate::{
     frame::{ColourSettings, Colours, Frame, Preparation, Prepared, Seams, Settings},
     geometry::{lens::Lens, model_view::ModelView, region::Region},
     lighting::{highlight_tables, lights::Directions, material_tables::fill_ramps, reflectance::LitMaterial},
-    memory::{Layout, Memory, take_ramps},
+    memory::{Layout, Memory, take},
     method::{Facts, Method},
     pixel::{Channels, Output, Pixel, gamma::Gamma, ramps::Ramps},
     placement::{Placements, Placing},
@@ -18,7 +18,7 @@ use crate::{
 };
 use core::mem;
 use embedded_graphics_core::geometry::Size;
-use zerocopy::FromZeros;
+use zerocopy::{FromZeros, IntoBytes};
 
 /// A renderer, which draws the frames of a [`Scene`] in the pixel format `C`. It owns the scene and all settings, and works in memory that
 /// the program lends it; nothing is allocated.
@@ -93,7 +93,7 @@ impl<'a, C: Pixel> Renderer<'a, C> {
             return Err(RenderError::Objects { need });
         }
         let need = layout.words::<C>();
-        let (ramps, memory) = take_ramps::<C>(layout, memory).ok_or(RenderError::Memory { need })?;
+        let (ramps, memory) = take::<C::Ramps>(memory.as_mut_bytes(), layout.materials).ok_or(RenderError::Memory { need })?;
         let (memory, objects, materials) = Memory::new(layout, memory, size_of::<C::Stored>()).ok_or(RenderError::Memory { need })?;
         if let Some(feature) = Feature::missing(&stream, &Channels::of::<C>(), Feature::is_on) {
             return Err(RenderError::Feature { name: feature.name() });
