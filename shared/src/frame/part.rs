@@ -77,8 +77,6 @@ impl Stats {
 #[derive(Debug)]
 pub(crate) struct FrameRows<'r> {
     pub(crate) bins: Bins,
-    /// Whether all triangles found room in the bins.
-    pub(crate) binned: bool,
     pub(crate) entries: &'r mut [Entry],
     /// Depth buffer of one band.
     pub(crate) depth: &'r mut [u16],
@@ -162,9 +160,9 @@ impl<'r> FrameRows<'r> {
     /// Divides the part into the rows above `row` and the rest: see [`crate::Frame::in_two`].
     pub(crate) fn in_two(self, row: u32, context: &Context<'_>) -> [Self; 2] {
         let (width, smooth) = (context.settings.size.width as usize, ANTIALIAS && context.settings.has_edges());
-        let Self { bins, binned, entries, depth, smoother, active_triangles, queue, rows, top, drawn, band_rows, bottom, stats } = self;
+        let Self { bins, entries, depth, smoother, active_triangles, queue, rows, top, drawn, band_rows, bottom, stats } = self;
         let used = bins.count().map_or(usize::MAX, usize::from);
-        let fits = binned && used <= entries.len() / 2 && band_rows >= 2 && (!smooth || context.settings.processors == 2);
+        let fits = used <= entries.len() / 2 && band_rows >= 2 && (!smooth || context.settings.processors == 2);
         let row = if fits { row.min(bottom).max(top) } else { bottom };
         // Each processor links the triangles of its own rows, so both have a list of all of them.
         let (entries, below) = halves(entries, if fits { used } else { usize::MAX });
@@ -178,7 +176,6 @@ impl<'r> FrameRows<'r> {
         let band_rows = band_rows.min(context.settings.size.height);
         let below = FrameRows {
             bins: bins.clone(),
-            binned,
             entries: below,
             depth: depth_below,
             smoother: smoother_below,
@@ -191,10 +188,7 @@ impl<'r> FrameRows<'r> {
             bottom,
             stats: Stats::default(),
         };
-        [
-            FrameRows { bins, binned, entries, depth, smoother, active_triangles, queue, rows, top, drawn, band_rows, bottom: row, stats },
-            below,
-        ]
+        [FrameRows { bins, entries, depth, smoother, active_triangles, queue, rows, top, drawn, band_rows, bottom: row, stats }, below]
     }
 
     /// Restricts the part to these `rows`.
@@ -303,7 +297,7 @@ impl<'r> FrameRows<'r> {
     /// Finds the edges that are smoothed, or drawn as lines.
     #[inline(never)]
     pub(crate) fn find_edges(&mut self, context: &Context<'_>) {
-        let Self { bins, binned, entries, depth, smoother, rows, stats, .. } = self;
+        let Self { bins, entries, depth, smoother, rows, stats, .. } = self;
         let hull = context.settings.touched(&context.region.hull());
         // An edge changes pixels beside those of triangles, and a line also rows in which no triangle has a pixel.
         let reach = rows.start.saturating_sub(1)..rows.end.saturating_add(1).min(context.settings.size.height);
@@ -313,7 +307,7 @@ impl<'r> FrameRows<'r> {
         let area = if lines { hull } else { PixelRect { rows: [within(rows.start), within(rows.end)], ..hull } };
         let put: &mut dyn FnMut(&Edge) = &mut |edge| smoother.put(edge, &area);
         let mut rest = bins.count().and_then(|count| entries.get(..count.into())).unwrap_or_default();
-        let mut complete = *binned;
+        let mut complete = bins.count().is_some();
         for placed in context.meshes().rev() {
             let Some(outlined) = context.outlined(&placed) else { continue };
             let words = placed.mesh.triangles.div_ceil(32) as usize;
@@ -351,7 +345,9 @@ impl<'r> FrameRows<'r> {
     ) {
         let (width, rows) = (context.settings.size.width as usize, bottom - top);
         let count = width * rows as usize;
-        if self.binned && (bottom <= self.rows.start || self.rows.end <= top) {
+        // Whether all triangles found room in the lists.
+        let is_binned = self.bins.count().is_some();
+        if is_binned && (bottom <= self.rows.start || self.rows.end <= top) {
             // No triangle has a pixel there, and the depth is unknown.
             self.drawn = bottom;
             return;
@@ -366,7 +362,7 @@ impl<'r> FrameRows<'r> {
             Band { pixels, depth, width, top: top as i32, rows: rows as i32, active, counts: Counts::default(), sheet: Default::default() };
         band.clear(self.rows.clone());
         // Decision: lists.
-        let (pixels, drawn) = if self.binned {
+        let (pixels, drawn) = if is_binned {
             self.bins.skip(self.entries, top);
             let mut walk = self.bins.band(self.entries, bottom);
             let pixels = draw_binned(context, colours, &mut walk, columns, &mut band);

@@ -174,7 +174,6 @@ impl<'r> Prepared<'r> {
         let depth_elision = if elides { context.convex().and_then(DepthElision::new) } else { None };
         let part = FrameRows {
             bins,
-            binned: false,
             entries,
             depth,
             smoother: Smoother::new(smoothing, settings.has_edges().then(|| Bins::new(size.height, band_rows))),
@@ -196,7 +195,6 @@ impl<'r> Prepared<'r> {
         let Self { context, part } = self;
         (context.vertices, context.depth_elision) = (cache, depth_elision);
         if let Some(count) = part.bins.count() {
-            part.binned = true;
             (part.stats.passes, part.stats.drawn) = (1, part.bins.linked(count).into());
             part.rows = part.bins.rows();
         }
