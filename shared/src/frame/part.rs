@@ -143,17 +143,15 @@ impl<'r> FrameRows<'r> {
             return Err(RenderError::Band { need: width as usize });
         }
         let Range { start, end } = context.region.next(self.top).rows();
-        if ANTIALIAS && context.settings.has_edges() {
+        let most = if ANTIALIAS && context.settings.has_edges() {
             // The last row of the buffer belongs to the next band, unless the picture ends there.
             let most = fit.min(self.band_rows).min((1 << 16) / width.max(1));
-            let most = if start + most >= context.settings.size.height { most } else { most.saturating_sub(1).max(1) };
-            let rows = most.min(end.min(self.bottom).saturating_sub(start));
-            return Ok((rows > 0).then(|| [start as u16, (start + rows) as u16]));
-        }
-        // Bands end where bins end.
-        let band_rows = self.band_rows;
-        let into = start.checked_rem(band_rows).unwrap_or(0);
-        let rows = band_rows.saturating_sub(into).min(end.min(self.bottom).saturating_sub(start)).min(fit);
+            if start + most >= context.settings.size.height { most } else { most.saturating_sub(1).max(1) }
+        } else {
+            // Bands end where bins end.
+            fit.min(self.band_rows.saturating_sub(start.checked_rem(self.band_rows).unwrap_or(0)))
+        };
+        let rows = most.min(end.min(self.bottom).saturating_sub(start));
         Ok((rows > 0).then(|| [start as u16, (start + rows) as u16]))
     }
 
