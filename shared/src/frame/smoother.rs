@@ -92,27 +92,14 @@ impl<'r> Smoother<'r> {
     /// Divides the memory between two processors.
     pub(crate) fn in_two(self, divides: bool) -> [Self; 2] {
         let Self { edges, room: _, count, bins, entries, marks, places, colours, .. } = self;
-        let half = |length: usize| if divides { length / 2 } else { length };
-        let (entries_length, marks_length, places_length, colours_length) =
-            (half(entries.len()), half(marks.len()), half(places.len()), half(colours.len()));
-        let (entries, entries_below) = halves(entries, entries_length);
+        let (entries, entries_below) = in_two(entries, divides);
         entries_below.iter_mut().zip(entries.iter()).for_each(|(below, entry)| *below = *entry);
-        let (marks, marks_below) = halves(marks, marks_length);
-        let (places, places_below) = halves(places, places_length);
-        let (colours, colours_below) = halves(colours, colours_length);
-        [(bins.clone(), entries, marks, places, colours), (bins, entries_below, marks_below, places_below, colours_below)].map(
-            |(bins, entries, marks, places, colours)| Self {
-                edges,
-                room: &mut [],
-                count,
-                bins,
-                entries,
-                marks,
-                places,
-                colours,
-                held: None,
-            },
-        )
+        let (marks, marks_below) = in_two(marks, divides);
+        let (places, places_below) = in_two(places, divides);
+        let (colours, colours_below) = in_two(colours, divides);
+        let of =
+            |bins, entries, marks, places, colours| Self { edges, room: &mut [], count, bins, entries, marks, places, colours, held: None };
+        [of(bins.clone(), entries, marks, places, colours), of(bins, entries_below, marks_below, places_below, colours_below)]
     }
 
     /// Whether `row` is held.
@@ -210,6 +197,12 @@ impl<'r> Smoother<'r> {
         keep(above, pixels, (rows.end - band.rows.start) as usize);
         store(pixels.get_mut(first * width..).unwrap_or_default(), self.marks, places, mixed);
     }
+}
+
+/// Both halves of some memory if it is divided; otherwise the first part has all.
+fn in_two<T>(memory: &mut [T], divides: bool) -> (&mut [T], &mut [T]) {
+    let length = if divides { memory.len() / 2 } else { memory.len() };
+    halves(memory, length)
 }
 
 /// The colours that are kept, in rows of `width` pixels.
