@@ -5,7 +5,7 @@ use crate::{
     error::{MAX_SIDE, RenderError},
     features::{self, Feature},
     format::{ErrorBudget, LARGEST_BUDGET, LEAST_BUDGET, LEVEL, MAX_LIGHTS},
-    frame::{ColourSettings, Colours, Frame, Preparation, Prepared, Seams, Settings},
+    frame::{ColourSettings, Colours, Frame, Halves, Preparation, Prepared, Seams, Settings},
     geometry::{lens::Lens, model_view::ModelView, region::Region},
     lighting::{highlight_tables, lights::Directions, material_tables::fill_ramps, reflectance::LitMaterial},
     memory::{Layout, Memory, take},
@@ -397,8 +397,8 @@ impl<'a, C: Pixel> Renderer<'a, C> {
             self.seams = Seams::new(&self.scene, &mut self.memory);
         }
         let Self { settings, colours, scene, memory, ramps, region, seams, .. } = self;
-        let colours = Colours { settings: colours, ramps };
-        Preparation::new(settings, scene, memory, region, seams.map(|seams| (seams, share)), colours)
+        let halves = Halves::new(settings, scene, memory, region, seams.map(|seams| (seams, share)));
+        Preparation::new(halves, Colours { settings: colours, ramps })
     }
 
     /// Places what has moved, and computes tables that are stale.

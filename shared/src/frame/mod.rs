@@ -10,8 +10,8 @@ mod smoother;
 pub(crate) use colours::{ColourSettings, Colours};
 pub(crate) use context::Settings;
 pub use part::Stats;
+pub(crate) use preparation::{Halves, Prepared, Seams};
 pub use preparation::{Preparation, PreparationPart};
-pub(crate) use preparation::{Prepared, Seams};
 pub use skips::Skips;
 
 use crate::{

@@ -102,7 +102,7 @@ pub struct Preparation<'r, C: Pixel> {
 
 /// A frame that is prepared in two halves.
 #[derive(Debug)]
-struct Halves<'r> {
+pub(crate) struct Halves<'r> {
     /// The frame. Its lists hold the later triangles.
     prepared: Prepared<'r>,
     cache: &'r mut [ScreenVertex],
@@ -205,15 +205,8 @@ impl<'r> Prepared<'r> {
 }
 
 impl<'r, C: Pixel> Preparation<'r, C> {
-    pub(crate) fn new(
-        settings: &'r Settings,
-        scene: &'r Scene<'_>,
-        memory: &'r mut Memory<'_>,
-        region: &'r Region,
-        seams: Option<(Seams, u16)>,
-        colours: Colours<'r, C>,
-    ) -> Self {
-        Self { colours, halves: Halves::new(settings, scene, memory, region, seams) }
+    pub(crate) fn new(halves: Halves<'r>, colours: Colours<'r, C>) -> Self {
+        Self { colours, halves }
     }
 
     /// Returns the two parts. Call [`PreparationPart::run`] for each, one on each processor. The first one has the later triangles of the
@@ -233,7 +226,7 @@ impl<'r, C: Pixel> Preparation<'r, C> {
 
 impl<'r> Halves<'r> {
     #[inline(never)]
-    fn new(
+    pub(crate) fn new(
         settings: &'r Settings,
         scene: &'r Scene<'_>,
         memory: &'r mut Memory<'_>,
