@@ -157,7 +157,7 @@ impl<'a, C: Pixel> Renderer<'a, C> {
         check_tables(shader.method(), self.has_highlight_tables)?;
         check_scene(scene.camera(), scene.lights(), scene.materials(), facts, self.settings.perspective_correct)?;
         (self.settings.method, self.colours.shader) = (shader.method(), shader);
-        self.scene.set_limits(limits(facts, self.settings.perspective_correct));
+        self.scene.limits = limits(facts, self.settings.perspective_correct);
         self.scene.set_stale();
         Ok(())
     }
@@ -231,7 +231,7 @@ impl<'a, C: Pixel> Renderer<'a, C> {
         let scene = &self.scene;
         check_scene(scene.camera(), scene.lights(), scene.materials(), self.settings.method.facts(), on)?;
         self.settings.perspective_correct = on;
-        self.scene.set_limits(limits(self.settings.method.facts(), on));
+        self.scene.limits = limits(self.settings.method.facts(), on);
         self.scene.set_view_changed();
         Ok(())
     }

@@ -126,9 +126,7 @@ impl<C: Pixel> Shader<C> {
             (false, _) => self.general,
         }
     }
-}
 
-impl<C: Pixel> Shader<C> {
     /// Returns the properties of the shading method, for example its name and its number.
     #[must_use]
     pub fn facts(&self) -> &'static Facts {

@@ -188,23 +188,16 @@ impl<'r> Context<'r> {
     /// Whether vertices are lit once it is known which triangles reach into the area: where that is not the whole picture, most do not, and
     /// levels take longer than to find that out.
     pub(crate) fn lights_later(&self) -> bool {
-        let may_have_levels = match self.settings.method.facts().vertex_light {
-            VertexLight::None | VertexLight::Cosines | VertexLight::CosinesAndReflection => false,
-            VertexLight::CosinesOrLevels | VertexLight::ReflectionOrLevels | VertexLight::Levels => true,
-        };
+        let light = self.settings.method.facts().vertex_light;
+        let may_have_levels = matches!(light, VertexLight::CosinesOrLevels | VertexLight::ReflectionOrLevels | VertexLight::Levels);
         REDRAW && may_have_levels && !self.region.is_whole()
-    }
-
-    /// Material `index` under the lights of the scene.
-    fn material(&self, index: usize) -> Option<LitMaterial<'r>> {
-        let reflectance = self.reflectances.get(index)?;
-        Some(LitMaterial::new(reflectance, reflectance.table(self.tables)))
     }
 
     /// The stage that transforms and lights the vertices of `placed`.
     pub(super) fn stage<'s>(&'s self, placed: &PlacedMesh<'s>) -> Option<VertexStage<'s>> {
         let light = self.settings.method.facts().vertex_light;
-        let reflectance = self.material(placed.material)?;
+        let reflectance = self.reflectances.get(placed.material)?;
+        let reflectance = LitMaterial::new(reflectance, reflectance.table(self.tables));
         let Placement { view, lighting, .. } = placed.placement;
         let has_colours = [placed.mesh.is_coloured(); COLOURED];
         let mut stage = VertexStage { view, lighting, constant: lighting.constant(), reflectance, light, has_colours };
@@ -323,7 +316,7 @@ impl<'r> Context<'r> {
                 error_bounds,
                 budget: self.settings.budget,
             },
-            painting: Painting::of(stream, placed.mesh, self.scene.is_gray(), || stage.view.is_perspective()),
+            painting: Painting::of(stream, placed.mesh, self.scene.channels.is_gray, || stage.view.is_perspective()),
             stage,
             depth_elision: self.depth_elision.as_ref(),
             first_triangle: placed.first_triangle,

@@ -49,7 +49,7 @@ impl ModelView {
     /// The transformation of an object with this `pose` in the world.
     #[must_use]
     pub fn of(&self, pose: &Pose) -> Self {
-        if pose.is_identity() {
+        if *pose == Pose::IDENTITY {
             return *self;
         }
         let (to_world, position, scale) = (pose.matrix(), map(pose.position(), |c| c.to_bits()), pose.scale().to_bits());

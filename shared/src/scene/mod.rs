@@ -100,9 +100,10 @@ pub struct Scene<'a> {
     /// Room for objects, of which `count` are used.
     objects: &'a mut [Object],
     count: usize,
-    limits: Limits,
+    /// Limits of the method in use. The scene is within them.
+    pub(crate) limits: Limits,
     /// Properties of the pixel format.
-    channels: Channels,
+    pub(crate) channels: Channels,
     /// Whether something other than the place of single objects has changed since the latest frame. Objects know themselves whether they have moved.
     pub(crate) repainted: bool,
     /// Whether all objects are seen otherwise than in the latest frame.
@@ -314,11 +315,6 @@ impl<'a> Scene<'a> {
         let is_coloured = |object: &Object, mesh: &Mesh| mesh.is_coloured() && object.material_of(mesh) == material;
         self.has_colours()
             && self.objects().iter().any(|object| meshes(object).unwrap_or_default().iter().any(|mesh| is_coloured(object, mesh)))
-    }
-
-    /// Whether the pixel format has greys.
-    pub(crate) fn is_gray(&self) -> bool {
-        self.channels.is_gray
     }
 
     /// Object `index`.
@@ -573,12 +569,7 @@ impl<'a> Scene<'a> {
         materials: impl IntoIterator<Item = &'m Material>,
     ) -> Result<(), SceneError> {
         let needs = |material| !LightTerms::new(&self.channels, ambient, material, lights).are_one_channel;
-        if COLOURS { Ok(()) } else { require(Feature::Colours, materials.into_iter().any(needs)) }
-    }
-
-    /// Sets the limits of the method in use. The scene is within them.
-    pub(crate) fn set_limits(&mut self, limits: Limits) {
-        self.limits = limits;
+        require(Feature::Colours, !COLOURS && materials.into_iter().any(needs))
     }
 }
 

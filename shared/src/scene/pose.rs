@@ -217,11 +217,6 @@ impl Pose {
         unit(quaternion).map(|rotation| Self { rotation, ..Self::IDENTITY }).ok_or(SceneError::Rotation)
     }
 
-    /// Whether nothing is rotated, moved or scaled.
-    pub(crate) fn is_identity(&self) -> bool {
-        *self == Self::IDENTITY
-    }
-
     /// Returns the rotation as a unit quaternion `[w, x, y, z]`.
     #[must_use]
     pub fn quaternion(&self) -> [Rotation; 4] {
