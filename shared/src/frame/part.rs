@@ -7,7 +7,7 @@ use crate::{
     frame::{
         colours::Colours,
         context::{Context, PlacedMesh},
-        smoother::{Kept, SmoothedBand, Smoother, keep},
+        smoother::{Kept, SmoothedBand, Smoother, keep, kept},
     },
     geometry::{
         bin::{Bins, Entry, TriangleKey, Walk},
@@ -244,13 +244,13 @@ impl<'r> FrameRows<'r> {
         let (count, next) = ((bottom - top) as usize, (bottom + 1).min(height));
         // The row that is held comes first, and a row below the band is held next. A buffer of one row holds one after the other.
         let is_single = count == 1 && pixels.len() < 2 * row;
-        let is_held = self.smoother.holds(top);
+        let is_held = self.smoother.held == Some(top);
         let drawn = if is_held || is_single { top + 1 } else { top };
         if !is_held {
             for first in top.saturating_sub(1)..drawn {
                 let pixels = pixels.get_mut(..row).unwrap_or_default();
                 self.draw_over(context, colours, pixels, under, columns, [first, first + 1], (first + 1 - top) as usize);
-                let Kept { above, held, .. } = self.smoother.kept::<C::Stored>(row);
+                let Kept { above, held, .. } = kept::<C::Stored>(self.smoother.colours, row);
                 keep(if first < top { above } else { held }, pixels, 1);
             }
         }
@@ -259,7 +259,7 @@ impl<'r> FrameRows<'r> {
         if !fresh.is_empty() {
             self.draw_over(context, colours, fresh, under, columns, [drawn, next], (drawn + 1 - top) as usize);
         }
-        let Kept { held, .. } = self.smoother.kept::<C::Stored>(row);
+        let Kept { held, .. } = kept::<C::Stored>(self.smoother.colours, row);
         let is_last = next == bottom;
         if drawn > top {
             for (pixel, held) in pixels.iter_mut().zip(held.iter_mut()) {
@@ -281,7 +281,7 @@ impl<'r> FrameRows<'r> {
         let depth = self.depth.get(start..start + (known.end - known.start) as usize * row).unwrap_or_default();
         let band = SmoothedBand { width: row, rows: top..bottom, known, depth };
         self.smoother.smooth(context, pixels, &band, colours.settings.output.gamma);
-        self.smoother.hold(bottom);
+        self.smoother.held = Some(bottom);
         // The depth of the last row and of the one below it comes first in the next band.
         for at in [0, row] {
             if let Some((first, last)) = self.depth.split_at_mut_checked(at + count * row).filter(|_| !is_last)

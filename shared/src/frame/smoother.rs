@@ -34,9 +34,10 @@ pub(crate) struct Smoother<'r> {
     entries: &'r mut [Entry],
     marks: &'r mut [u8],
     places: &'r mut [u16],
-    colours: &'r mut [u8],
-    /// The row that is held.
-    held: Option<u32>,
+    /// The colours that are kept, as bytes, see [`kept`].
+    pub(crate) colours: &'r mut [u8],
+    /// The row that is held. Its colours are in [`Kept::held`].
+    pub(crate) held: Option<u32>,
 }
 
 /// Colours of the rows around a band, and room for mixed ones.
@@ -100,21 +101,6 @@ impl<'r> Smoother<'r> {
         let of =
             |bins, entries, marks, places, colours| Self { edges, room: &mut [], count, bins, entries, marks, places, colours, held: None };
         [of(bins.clone(), entries, marks, places, colours), of(bins, entries_below, marks_below, places_below, colours_below)]
-    }
-
-    /// Whether `row` is held.
-    pub(crate) fn holds(&self, row: u32) -> bool {
-        self.held == Some(row)
-    }
-
-    /// Holds a row, whose colours are in [`Kept::held`].
-    pub(crate) fn hold(&mut self, row: u32) {
-        self.held = Some(row);
-    }
-
-    /// The colours that are kept, in rows of `width` pixels.
-    pub(crate) fn kept<S: FromBytes + IntoBytes + Immutable + KnownLayout>(&mut self, width: usize) -> Kept<'_, S> {
-        kept(self.colours, width)
     }
 
     /// Smooths the pixels of a band. Only the rows whose depth is known have edges.
@@ -206,7 +192,7 @@ fn in_two<T>(memory: &mut [T], divides: bool) -> (&mut [T], &mut [T]) {
 }
 
 /// The colours that are kept, in rows of `width` pixels.
-fn kept<S: FromBytes + IntoBytes + Immutable + KnownLayout>(colours: &mut [u8], width: usize) -> Kept<'_, S> {
+pub(crate) fn kept<S: FromBytes + IntoBytes + Immutable + KnownLayout>(colours: &mut [u8], width: usize) -> Kept<'_, S> {
     let colours = <[S]>::mut_from_bytes(colours).unwrap_or_default();
     let (above, colours) = halves(colours, width);
     let (held, mixed) = halves(colours, width);
