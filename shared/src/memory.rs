@@ -198,25 +198,22 @@ impl Layout {
         (self.rows + if self.antialias { 2 } else { 0 }) * self.width * self.processors
     }
 
-    /// Edges, their entries in lists, pixels that can be marked, and places of marked pixels.
-    const fn smoothing(&self) -> [usize; 4] {
-        if self.antialias { [self.edges, self.edges * self.processors, self.band() * self.processors, self.marked()] } else { [0; 4] }
-    }
-
-    /// Marked pixels of a band that there is room for: at least those of a row.
-    const fn marked(&self) -> usize {
-        (self.width + self.band() / 4) * self.processors
-    }
-
-    /// Colours that are kept for antialiasing: of marked pixels, and of two rows.
-    const fn kept(&self) -> usize {
-        if self.antialias { self.marked() + 2 * self.width * self.processors } else { 0 }
+    /// Edges, their entries in lists, pixels that can be marked, places of marked pixels, and kept colours: of marked pixels, and of two rows.
+    const fn smoothing(&self) -> [usize; 5] {
+        if !self.antialias {
+            return [0; 5];
+        }
+        let Self { width, processors, edges, .. } = *self;
+        // At least the pixels of a row.
+        let marked = (width + self.band() / 4) * processors;
+        [edges, edges * processors, self.band() * processors, marked, marked + 2 * width * processors]
     }
 
     /// Returns the number of 64-bit words of memory that a renderer needs when it draws in the pixel format `C`.
     /// [`Renderer::new`](crate::Renderer::new) takes a `&mut [u64]` of this length.
     #[must_use]
     pub const fn words<C: Pixel>(&self) -> usize {
+        let [edges, edge_entries, marks, places, kept] = self.smoothing();
         let bytes = padded(self.vertices * size_of::<ScreenVertex>())
             + padded(self.triangles * size_of::<Entry>())
             + padded(self.active_triangles * size_of::<ActiveTriangle>())
@@ -227,11 +224,11 @@ impl Layout {
             + padded(self.materials * size_of::<Reflectance>())
             + padded(self.tables() * size_of::<HighlightLut>())
             + padded(self.materials * size_of::<ErrorBounds>())
-            + padded(self.smoothing()[0] * size_of::<Edge>())
-            + padded(self.smoothing()[1] * size_of::<Entry>())
-            + padded(self.smoothing()[2])
-            + padded(self.smoothing()[3] * size_of::<u16>())
-            + padded(self.kept() * size_of::<C::Stored>())
+            + padded(edges * size_of::<Edge>())
+            + padded(edge_entries * size_of::<Entry>())
+            + padded(marks)
+            + padded(places * size_of::<u16>())
+            + padded(kept * size_of::<C::Stored>())
             + padded(self.materials * size_of::<C::Ramps>())
             + padded(self.depth() * size_of::<u16>());
         bytes / size_of::<u64>()
@@ -309,12 +306,12 @@ impl<'a> Memory<'a> {
         let (reflectances, bytes) = take(bytes, layout.materials)?;
         let (tables, bytes) = take(bytes, layout.tables())?;
         let (error_bounds, bytes) = take(bytes, layout.materials)?;
-        let [edges, edge_entries, marks, places] = layout.smoothing();
+        let [edges, edge_entries, marks, places, kept] = layout.smoothing();
         let (edges, bytes) = take(bytes, edges)?;
         let (edge_entries, bytes) = take(bytes, edge_entries)?;
         let (marks, bytes) = take(bytes, marks)?;
         let (places, bytes) = take(bytes, places)?;
-        let (kept, bytes) = take(bytes, layout.kept() * stored)?;
+        let (kept, bytes) = take(bytes, kept * stored)?;
         let smoothing = Smoothing { edges, entries: edge_entries, marks, places, colours: kept };
         let (depth, bytes) = take(bytes, layout.depth())?;
         let (objects, bytes) = take(bytes, layout.objects)?;
