@@ -259,8 +259,8 @@ const _: () = {
 pub(crate) struct Memory<'a> {
     /// Transformed vertices.
     pub(crate) vertices: &'a mut [ScreenVertex],
-    /// Triangles that face the camera.
-    pub(crate) bins: &'a mut [Entry],
+    /// Triangles that face the camera, in lists.
+    pub(crate) entries: &'a mut [Entry],
     /// Depth of one band.
     pub(crate) depth: &'a mut [u16],
     /// Objects in the latest frame.
@@ -299,7 +299,7 @@ impl<'a> Memory<'a> {
     /// `None` if there are fewer than [`Layout::words`] says. A colour takes `stored` bytes.
     pub(crate) fn new(layout: &Layout, bytes: &'a mut [u8], stored: usize) -> Option<(Self, &'a mut [Object], &'a mut [SceneMaterial])> {
         let (vertices, bytes) = take(bytes, layout.vertices)?;
-        let (bins, bytes) = take(bytes, layout.triangles)?;
+        let (entries, bytes) = take(bytes, layout.triangles)?;
         let (active_triangles, bytes) = take(bytes, layout.active_triangles)?;
         let (placements, bytes) = take(bytes, layout.objects)?;
         let (order, bytes) = take(bytes, layout.objects)?;
@@ -317,7 +317,7 @@ impl<'a> Memory<'a> {
         let (objects, bytes) = take(bytes, layout.objects)?;
         let (materials, _) = take(bytes, layout.materials)?;
         Some((
-            Self { vertices, bins, depth, placements, order, reflectances, tables, error_bounds, smoothing, active_triangles },
+            Self { vertices, entries, depth, placements, order, reflectances, tables, error_bounds, smoothing, active_triangles },
             objects,
             materials,
         ))

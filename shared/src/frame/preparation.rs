@@ -52,7 +52,7 @@ impl Seams {
         let stream = &scene.stream;
         let placements = Placements::new(scene, memory.placements, memory.order);
         let (triangles, vertices) = (placements.drawn() as usize, scene.vertices() as usize);
-        let fits = triangles <= memory.bins.len() && vertices <= memory.vertices.len() && seam(memory.depth, vertices).len() == vertices;
+        let fits = triangles <= memory.entries.len() && vertices <= memory.vertices.len() && seam(memory.depth, vertices).len() == vertices;
         if !fits || !(2 * STEPS..1 << 15).contains(&triangles) {
             return None;
         }
@@ -147,24 +147,14 @@ impl<'r> Prepared<'r> {
 
     #[inline(always)]
     fn empty(settings: &'r Settings, scene: &'r Scene<'_>, memory: &'r mut Memory<'_>, region: &'r Region) -> Empty<'r> {
-        let Memory {
-            vertices: cache,
-            bins: entries,
-            depth,
-            placements,
-            order,
-            reflectances,
-            tables,
-            error_bounds,
-            smoothing,
-            active_triangles,
-        } = memory;
+        let Memory { vertices, entries, depth, placements, order, reflectances, tables, error_bounds, smoothing, active_triangles } =
+            memory;
         let size = settings.size;
         let placements = Placements::new(scene, placements, order);
         // Bins as high as the bands of one processor.
         let band_rows = settings.band_rows().checked_div(settings.processors).unwrap_or(0);
         let bins = Bins::new(size.height, band_rows);
-        let uncached = scene.vertices().saturating_sub(cache.len() as u32);
+        let uncached = scene.vertices().saturating_sub(vertices.len() as u32);
         let triangles = placements.drawn();
         let visible = placements.objects(scene).filter(|(placement, _)| placement.drawn > 0);
         let as_they_are = visible.fold(0, |sum, (_, object)| sum + object.triangles);
@@ -186,7 +176,7 @@ impl<'r> Prepared<'r> {
             bottom: region.hull().rows().end,
             stats: Stats { triangles, simplified: as_they_are - triangles, uncached, ..Stats::default() },
         };
-        (Self { context, part }, cache, depth_elision)
+        (Self { context, part }, vertices, depth_elision)
     }
 
     /// Completes the frame, once all triangles are in the bins and `cache` has the vertices.
