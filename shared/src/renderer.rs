@@ -4,7 +4,7 @@ use crate::{
     Stream,
     error::{MAX_SIDE, RenderError},
     features::{self, Feature},
-    format::{ErrorBudget, LARGEST_BUDGET, LEAST_BUDGET, LEVEL, MAX_LIGHTS},
+    format::{ErrorBudget, LARGEST_BUDGET, LEAST_BUDGET, MAX_LIGHTS},
     frame::{ColourSettings, Colours, Frame, Halves, Preparation, Prepared, Seams, Settings},
     geometry::{lens::Lens, model_view::ModelView, region::Region},
     lighting::{highlight_tables, lights::Directions, material_tables::fill_ramps, reflectance::LitMaterial},
@@ -109,7 +109,7 @@ impl<'a, C: Pixel> Renderer<'a, C> {
             antialias: false,
             outlines: None,
             lacking_tables: 0,
-            budget: level(stream.header.budget().unwrap_or(C::BUDGET)),
+            budget: stream.header.budget().unwrap_or(C::BUDGET),
             #[cfg(feature = "skips")]
             skips: crate::frame::Skips::ALL,
             levels_of_detail: true,
@@ -246,7 +246,7 @@ impl<'a, C: Pixel> Renderer<'a, C> {
         if !(LEAST_BUDGET..=LARGEST_BUDGET).contains(&budget) {
             return Err(RenderError::Budget);
         }
-        self.settings.budget = level(budget);
+        self.settings.budget = budget;
         self.scene.set_view_changed();
         Ok(())
     }
@@ -254,7 +254,7 @@ impl<'a, C: Pixel> Renderer<'a, C> {
     /// Returns the error budget that [`Self::set_budget`] sets.
     #[must_use]
     pub fn budget(&self) -> ErrorBudget {
-        ErrorBudget::from_bits((self.settings.budget >> (LEVEL - ErrorBudget::FRAC_NBITS)) as u8)
+        self.settings.budget
     }
 
     /// Turns dither on or off; the default is on. Dither hides the visible steps between colours of few bits. The next frame computes the
@@ -448,11 +448,6 @@ impl<'a, C: Pixel> Renderer<'a, C> {
         }
         scene.set_drawn();
     }
-}
-
-/// An error budget as a level, Q9.7.
-fn level(budget: ErrorBudget) -> u32 {
-    u32::from(budget.to_bits()) << (LEVEL - ErrorBudget::FRAC_NBITS)
 }
 
 /// What a method can draw, with interpolation in perspective or without.

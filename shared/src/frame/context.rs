@@ -3,6 +3,7 @@
 use crate::{
     edges::{Edge, find::Outlined},
     features::{ANTIALIAS, COLOURED, OBJECTS, REDRAW, TRANSPARENCY},
+    format::{ErrorBudget, LEVEL},
     frame::skips::Skips,
     geometry::{
         depth_elision::DepthElision,
@@ -36,8 +37,8 @@ pub(crate) struct Settings {
     pub(crate) outlines: Option<Outlines>,
     /// The number of tables of highlights that the materials need, if there are fewer; otherwise 0.
     pub(crate) lacking_tables: usize,
-    /// How far a pixel may be off by a method that keeps to a budget, in 1/255, Q9.7.
-    pub(crate) budget: u32,
+    /// How far a pixel may be off by a method that keeps to a budget, in 1/255.
+    pub(crate) budget: ErrorBudget,
     #[cfg(feature = "skips")]
     pub(crate) skips: Skips,
     /// Whether coarser levels of meshes are drawn.
@@ -314,7 +315,7 @@ impl<'r> Context<'r> {
                 exponent,
                 constant: stage.constant.copied(),
                 error_bounds,
-                budget: self.settings.budget,
+                budget: u32::from(self.settings.budget.to_bits()) << (LEVEL - ErrorBudget::FRAC_NBITS),
             },
             painting: Painting::of(stream, placed.mesh, self.scene.channels.is_gray, || stage.view.is_perspective()),
             stage,
