@@ -31,7 +31,7 @@
 
 use crate::{
     arch::{product::product, zeros::leading_zeros},
-    format::{INVERSE_ALTITUDE, SUBPIXEL, UNIT},
+    format::{INVERSE_ALTITUDE, UNIT},
     geometry::{model_view::ModelView, projection::View},
     math::vector::{map, narrow_dot, wide},
     stream::record::{LEAN, Triangle},
@@ -172,14 +172,6 @@ impl Extent {
     #[must_use]
     pub(crate) fn fits_words(&self) -> bool {
         fits_words(((self.right - self.left) | (self.bottom - self.top)) as u32, self.area)
-    }
-
-    /// Whether no pixel can lie wholly inside the triangle. If a triangle contains a square, at most half of its area is square, and its smallest
-    /// altitude, which is its smallest width, is at least the square's side.
-    #[must_use]
-    pub fn contains_no_pixel(&self) -> bool {
-        let side = (self.right - self.left).max(self.bottom - self.top);
-        self.area < 4 << (2 * SUBPIXEL) || i64::from(self.area) < i64::from(side) << SUBPIXEL
     }
 
     /// An upper bound of the longest side: the larger of width and height plus half of the other, since x² + y² <= (x + y/2)² where y <= x.
