@@ -44,36 +44,17 @@ impl Bounds {
         }
     }
 
-    /// The pixels that the bounding box of `corners` touches.
+    /// The pixels that the bounding box of a triangle touches.
+    #[inline]
     #[must_use]
-    pub fn touched(corners: impl Iterator<Item = [i32; 3]>) -> Self {
-        let none = Self { left: i32::MAX, top: i32::MAX, right: i32::MIN, bottom: i32::MIN };
+    pub fn touched(extent: &Extent) -> Self {
         // A touched pixel's centre lies up to half a pixel beyond the box.
-        let reach = |c: i32| [first_centre(c - (CENTRE - 1)), first_centre(c + CENTRE)];
-        corners.fold(none, |bounds, [x, y, _]| {
-            let ([left, right], [top, bottom]) = (reach(x), reach(y));
-            Self {
-                left: bounds.left.min(left),
-                top: bounds.top.min(top),
-                right: bounds.right.max(right),
-                bottom: bounds.bottom.max(bottom),
-            }
-        })
-    }
-
-    /// The bounds of one point `[x, y, _]`: empty, to be extended.
-    #[must_use]
-    pub fn at([x, y, _]: [i32; 3]) -> Self {
-        Self { left: first_centre(x), top: first_centre(y), right: first_centre(x), bottom: first_centre(y) }
-    }
-
-    /// Extends the bounds to `point`.
-    pub fn include(&mut self, point: [i32; 3]) {
-        let other = Self::at(point);
-        self.left = self.left.min(other.left);
-        self.top = self.top.min(other.top);
-        self.right = self.right.max(other.right);
-        self.bottom = self.bottom.max(other.bottom);
+        Self {
+            left: first_centre(extent.left - (CENTRE - 1)),
+            top: first_centre(extent.top - (CENTRE - 1)),
+            right: first_centre(extent.right + CENTRE),
+            bottom: first_centre(extent.bottom + CENTRE),
+        }
     }
 
     /// All pixels of a viewport of this size.
@@ -156,32 +137,23 @@ impl Viewport {
         if extent.area <= 0 {
             return None;
         }
-        let bounds = if self.all_touched {
-            Bounds::touched([[extent.left, extent.top, 0], [extent.right, extent.bottom, 0]].into_iter())
-        } else {
-            Bounds::new(extent)
-        };
-        bounds.visible(part)
+        if self.all_touched { Bounds::touched(extent) } else { Bounds::new(extent) }.visible(part)
     }
 
     /// Whether a triangle shows its front and touches a pixel of `area`, even if it contains no centre of one.
     #[inline(never)]
     pub fn touches(self, extent: &Extent, area: Bounds) -> bool {
-        let corners = [[extent.left, extent.top, 0], [extent.right, extent.bottom, 0]];
-        extent.area > 0 && Bounds::touched(corners.into_iter()).visible(area).is_some()
+        extent.area > 0 && Bounds::touched(extent).visible(area).is_some()
     }
 
-    /// [`Self::touches`] by vertices, for triangles with a corner that is not cached or needs clipping. Of a clipped triangle its plane has decided
-    /// that it shows its front.
+    /// [`Self::touches`] by vertices, for triangles with a corner that is not cached or needs clipping.
     #[cold]
     #[inline(never)]
     pub fn touches_by(self, view: &View, vertices: [&Vertex; 3], area: Bounds) -> bool {
         let places = vertices.map(|vertex| view.lens.project(view.to_eye(vertex.position)));
-        if places.iter().all(|&(_, inside)| inside) {
-            return self.touches(&Extent::new(places.map(|([x, y, _], _)| [x, y])), area);
-        }
-        let polygon = clip::clip(view, vertices);
-        !polygon.is_empty() && Bounds::touched(polygon.iter().map(|cut| cut.place)).visible(area).is_some()
+        let is_inside = places.iter().all(|&(_, inside)| inside);
+        let extent = if is_inside { Some(Extent::new(places.map(|([x, y, _], _)| [x, y]))) } else { extent_of_clipped(view, vertices) };
+        extent.is_some_and(|extent| self.touches(&extent, area))
     }
 
     /// [`Self::bounds`] by the corners, for rare triangles.
@@ -201,14 +173,7 @@ impl Viewport {
     #[cold]
     #[inline(never)]
     pub fn clipped_bounds(self, view: &View, vertices: [&Vertex; 3]) -> Option<Bounds> {
-        let polygon = clip::clip(view, vertices);
-        let mut corners = polygon.iter().map(|cut| cut.place);
-        if self.all_touched {
-            return Bounds::touched(corners).visible(self.whole());
-        }
-        let mut bounds = Bounds::at(corners.next()?);
-        corners.for_each(|corner| bounds.include(corner));
-        bounds.visible(self.whole())
+        self.bounds(&extent_of_clipped(view, vertices)?)
     }
 
     /// The visible bounding box of a triangle.
@@ -216,4 +181,16 @@ impl Viewport {
         let extent = Extent::new(corners.map(|corner| [corner.x, corner.y]));
         Bounds::new(&extent).clipped(self.whole()).sides()
     }
+}
+
+/// The extent of the part that clipping leaves of a triangle; `None` if it leaves none. Of its area only the sign has a meaning: the plane of the
+/// triangle has decided that it shows its front.
+#[cold]
+#[inline(never)]
+fn extent_of_clipped(view: &View, vertices: [&Vertex; 3]) -> Option<Extent> {
+    let polygon = clip::clip(view, vertices);
+    let places = || polygon.iter().map(|cut| cut.place);
+    let (left, right) = (places().map(|[x, ..]| x).min()?, places().map(|[x, ..]| x).max()?);
+    let (top, bottom) = (places().map(|[_, y, _]| y).min()?, places().map(|[_, y, _]| y).max()?);
+    Some(Extent { left, right, top, bottom, area: 1 })
 }
