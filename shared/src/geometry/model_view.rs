@@ -77,22 +77,24 @@ impl ModelView {
         rotated_back(self.to_world, v)
     }
 
-    /// Converts a point of eye space, Q18.14, to object space, Q7.25; see [`FARTHEST`].
+    /// Converts a point of eye space or of the world, Q18.14, to object space, Q7.25, rounded down. A vector from the object's centre that is too
+    /// long for this is shortened, see [`FARTHEST`]. For an object of radius 1 this changes the direction of a point 56 units away or farther by at
+    /// most 1/56 rad.
+    #[inline(never)]
     #[must_use]
-    pub fn point_to_object(&self, v: [i32; 3]) -> [i32; 3] {
-        self.near(self.rotation, sub(v, self.translation))
-    }
-
-    /// Converts a point of the world, Q18.14, to object space, Q7.25; see [`FARTHEST`].
-    #[must_use]
-    pub fn world_point_to_object(&self, v: [i32; 3]) -> [i32; 3] {
-        self.near(self.to_world, sub(v, self.position))
+    pub fn point_to_object(&self, point: [i32; 3], is_eye_space: bool) -> [i32; 3] {
+        let point = self.unlimited(point, is_eye_space);
+        if point.iter().all(|c| c.abs() <= FARTHEST) {
+            return point.map(|c| c as i32);
+        }
+        // Below 2^36.
+        normalise(point.map(|c| (c >> 6) as i32)).map(|c| ((i64::from(c) * FARTHEST) >> ROTATION) as i32)
     }
 
     /// The eye in object space, Q7.25; see [`FARTHEST`].
     #[must_use]
     pub fn eye(&self) -> [i32; 3] {
-        self.point_to_object([0; 3])
+        self.point_to_object([0; 3], true)
     }
 
     /// Converts a length of the world to units of object space, in its format, rounded down.
@@ -101,34 +103,22 @@ impl ModelView {
         ((i64::from(length) * i64::from(self.inverse_scale)) >> 16) as i32
     }
 
-    /// Rotates a vector from the object's centre by the inverse of `rotation`, and converts it to units of object space, from Q18.14 to Q7.25,
-    /// rounded down. A vector that is too long for this is shortened. For an object of radius 1 this changes the direction of a point 56 units away
-    /// or farther by at most 1/56 rad.
-    #[inline(never)]
-    fn near(&self, rotation: [[i32; 3]; 3], v: [i32; 3]) -> [i32; 3] {
-        let point = self.unlimited(rotation, v);
-        if point.iter().all(|c| c.abs() <= FARTHEST) {
-            return point.map(|c| c as i32);
-        }
-        // Below 2^36.
-        normalise(point.map(|c| (c >> 6) as i32)).map(|c| ((i64::from(c) * FARTHEST) >> ROTATION) as i32)
-    }
-
-    /// [`Self::near`] for a vector of any length.
+    /// [`Self::point_to_object`] for a point at any distance.
     #[inline(always)]
-    fn unlimited(&self, rotation: [[i32; 3]; 3], v: [i32; 3]) -> [i64; 3] {
+    fn unlimited(&self, point: [i32; 3], is_eye_space: bool) -> [i64; 3] {
+        let (rotation, centre) = if is_eye_space { (self.rotation, self.translation) } else { (self.to_world, self.position) };
+        let way = sub(point, centre);
         // Q.44, then Q.30 of the world, then Q.46 of object space.
-        map(transposed(rotation), |column| ((dot(column, v) >> UNIT) * i64::from(self.inverse_scale)) >> (ROTATION + 16 - POSITION))
+        map(transposed(rotation), |column| ((dot(column, way) >> UNIT) * i64::from(self.inverse_scale)) >> (ROTATION + 16 - POSITION))
     }
 
-    /// The squared length, Q.38, of the vector from the object's centre to a point, if the point is too far away to be converted and
-    /// [`Self::point_to_object`] or [`Self::world_point_to_object`] shortens the vector to [`FARTHEST_UNITS`]. `is_eye_space` tells which of the two.
+    /// The squared length, Q.38, of the vector from the object's centre to a point, if the point is so far away that [`Self::point_to_object`]
+    /// shortens the vector to [`FARTHEST_UNITS`].
     #[must_use]
-    pub fn shortened(&self, v: [i32; 3], is_eye_space: bool) -> Option<u64> {
-        let (rotation, centre) = if is_eye_space { (self.rotation, self.translation) } else { (self.to_world, self.position) };
-        let point = self.unlimited(rotation, sub(v, centre));
-        let shorter = point.map(|c| (c >> 6) as i32);
-        point.iter().any(|c| c.abs() > FARTHEST).then(|| dot(shorter, shorter) as u64)
+    pub fn shortened(&self, point: [i32; 3], is_eye_space: bool) -> Option<u64> {
+        let way = self.unlimited(point, is_eye_space);
+        let shorter = way.map(|c| (c >> 6) as i32);
+        way.iter().any(|c| c.abs() > FARTHEST).then(|| dot(shorter, shorter) as u64)
     }
 }
 

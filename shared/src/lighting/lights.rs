@@ -191,7 +191,7 @@ impl Source {
             return Self { vectors: [model_view.world_to_object(towards), model_view.world_to_object(half)], kind, ..Self::new_zeroed() };
         }
         let is_eye_space = light.space == EYE_SPACE;
-        let point = if is_eye_space { model_view.point_to_object(light.vector) } else { model_view.world_point_to_object(light.vector) };
+        let point = model_view.point_to_object(light.vector, is_eye_space);
         let (mut axis, mut shape) = ([0; 3], <[Shape; SHAPES]>::new_zeroed());
         if let Some(shape) = shape.first_mut() {
             (*shape, axis) = Shape::new(light, model_view, model_view.shortened(light.vector, is_eye_space));

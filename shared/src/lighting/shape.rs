@@ -255,7 +255,7 @@ mod tests {
             let pose = Pose::about([3, -1, 2], Angle::from_bits(random(31) << 3)).unwrap();
             let view = world.of(&pose.scaled(Scale::from_bits(scale)).unwrap());
             let (shape, direction) = Shape::new(&light, &view, view.shortened(vector, false));
-            let place = view.world_point_to_object(vector);
+            let place = view.point_to_object(vector, false);
             // A point of the object, of a radius of 1; close to the light if it can be.
             let is_moved = view.shortened(vector, false).is_some();
             let vertex = if is_moved { [0; 3] } else { [signed(37, 26), signed(41, 26), signed(43, 26)] };
