@@ -69,11 +69,11 @@ impl Placement {
         if self.area.is_empty() {
             return;
         }
-        [.., self.depth] = self.view.origin();
+        [.., self.depth] = self.view.origin;
         self.facing = if how.leaves_out_back_faces { Facing::new(&self.view, &model_view, object.bounds.radius) } else { Facing::ANY };
         self.lighting.place(&scene.camera, scene.lights(), &how.directions, &model_view);
         let has_levels = object.has_levels != 0 && how.levels_of_detail;
-        let tolerance = if has_levels { self.tolerance(scene, object) } else { GeometricError::ZERO };
+        let tolerance = if has_levels { self.tolerance(scene, object, &model_view) } else { GeometricError::ZERO };
         self.tolerance = tolerance.to_bits();
         self.triangles = if tolerance == GeometricError::ZERO {
             object.triangles
@@ -98,11 +98,11 @@ impl Placement {
     }
 
     /// Largest distance of coarser levels from the meshes of `object`.
-    fn tolerance(&self, scene: &Scene<'_>, object: &Object) -> GeometricError {
-        let ([.., depth], scale) = (self.view.origin(), u64::from(self.view.scale()));
+    fn tolerance(&self, scene: &Scene<'_>, object: &Object, model_view: &ModelView) -> GeometricError {
+        let ([.., depth], scale) = (self.view.origin, u64::from(self.view.scale));
         let radius = ((u64::from(object.bounds.radius) * scale + 0xFFFF) >> 16) as u32;
         let error = tolerance(&scene.camera, depth, radius, self.view.lens.size()).to_bits();
-        GeometricError::from_bits(self.view.least_in_object_units(error.into()).min(u16::MAX.into()) as u16)
+        GeometricError::from_bits(model_view.in_object_units(error.into()).min(u16::MAX.into()) as u16)
     }
 
     /// The object's meshes, each at the level that is drawn.

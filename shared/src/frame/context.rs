@@ -158,7 +158,7 @@ impl<'r> Context<'r> {
         let mut meshes = self.meshes();
         let only = meshes.next().filter(|only| only.mesh.flags & CLOSED_CONVEX != 0)?;
         let view = &only.placement.view;
-        (meshes.next().is_none() && view.scale() <= 1 << 16).then_some(view)
+        (meshes.next().is_none() && view.scale <= 1 << 16).then_some(view)
     }
 
     /// The mesh of triangle `id` of the frame.
@@ -300,7 +300,7 @@ impl<'r> Context<'r> {
         let method = self.settings.method;
         let (stream, material, stage) = (&self.scene.stream, placed.material, self.stage(placed)?);
         let reflectance = stage.reflectance;
-        let perspective = self.settings.perspective_correct && stage.view.is_perspective();
+        let perspective = self.settings.perspective_correct && stage.view.lens.is_perspective();
         let lighting = stage.lighting;
         // In perspective, light is interpolated between columns that depend on where a row begins: rows are drawn whole.
         let columns = if perspective { [0, self.settings.size.width as u16] } else { columns };
@@ -317,7 +317,7 @@ impl<'r> Context<'r> {
                 error_bounds,
                 budget: u32::from(self.settings.budget.to_bits()) << (LEVEL - ErrorBudget::FRAC_NBITS),
             },
-            painting: Painting::of(stream, placed.mesh, self.scene.channels.is_gray, || stage.view.is_perspective()),
+            painting: Painting::of(stream, placed.mesh, self.scene.channels.is_gray, || stage.view.lens.is_perspective()),
             stage,
             depth_elision: self.depth_elision.as_ref(),
             first_triangle: placed.first_triangle,

@@ -85,21 +85,21 @@ impl Facing {
     pub fn new(view: &View, model_view: &ModelView, radius: u16) -> Self {
         let (vector, reach) = (view.viewer(model_view), view.reach(radius));
         // In object space: rounding moves a corner by as much more as the object is small.
-        let moved = view.in_object_units(view.lens.displacement(reach));
-        let (right, larger, offset_scale, reach) = if view.is_perspective() {
+        let moved = model_view.most_in_object_units(view.lens.displacement(reach));
+        let (right, larger, offset_scale, reach) = if view.lens.is_perspective() {
             // The eye is taken to units that are larger than those of object space by a power of two, and so large that 32 bits hold it.
             let [x, y, z] = map(vector, i32::unsigned_abs);
             let farthest = (x | y | z) >> UNIT;
             let finer = view.viewer_exponent();
             let right = (32 - farthest.leading_zeros()).saturating_sub(FARTHEST_EYE).max(finer.max(0).unsigned_abs());
             let larger = right.saturating_add_signed(-finer).min(31);
-            let reach = (view.in_object_units(reach) as u32 + ((1 << larger) - 1)) >> larger;
+            let reach = (model_view.most_in_object_units(reach) as u32 + ((1 << larger) - 1)) >> larger;
             (right, larger, (1 << EYE) >> larger, reach)
         } else {
             (0, 0, 0, reach)
         };
         // 2 r D, from Q.30 and Q.14, rounded up. A direction that is not scaled by a power of two is up to twice as long as a unit vector.
-        let doubled = u64::from(!view.is_perspective() && !view.scale().is_power_of_two());
+        let doubled = u64::from(!view.lens.is_perspective() && !view.scale.is_power_of_two());
         let slack = (((2 * moved * u64::from(reach)) >> (30 + UNIT - PER_ALTITUDE)) + 1) << doubled;
         if slack > MAX_SLACK || larger > EYE {
             // There are so few pixels that any triangle may turn over.

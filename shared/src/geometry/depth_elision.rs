@@ -54,7 +54,7 @@ impl DepthElision {
         let (lens, size) = (&view.lens, view.lens.size());
         let thickness = lens.moved(3);
         // The body lies within one unit of its origin.
-        let is_seen = lens.is_perspective() || view.origin()[2] + (1 << UNIT) + BEHIND <= lens.far;
+        let is_seen = lens.is_perspective() || view.origin[2] + (1 << UNIT) + BEHIND <= lens.far;
         let size = [size.width, size.height].map(|side| (side << SUBPIXEL) as i32);
         (is_seen && thickness < THICKEST).then_some(Self {
             thickness: thickness as i32,

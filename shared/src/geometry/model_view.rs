@@ -103,6 +103,14 @@ impl ModelView {
         ((i64::from(length) * i64::from(self.inverse_scale)) >> 16) as i32
     }
 
+    /// Converts `length` of the world to units of object space, in its format, rounded up.
+    #[must_use]
+    pub fn most_in_object_units(&self, length: u32) -> u64 {
+        // The inverse is rounded down; at the scale 1 it is exact, and the length as well.
+        let inexact = u32::from(self.scale != 1 << 16);
+        ((u64::from(length) * u64::from(self.inverse_scale + inexact)) >> 16) + u64::from(inexact)
+    }
+
     /// [`Self::point_to_object`] for a point at any distance.
     #[inline(always)]
     fn unlimited(&self, point: [i32; 3], is_eye_space: bool) -> [i64; 3] {

@@ -64,15 +64,12 @@ pub struct View {
     rotation: [[i32; 3]; 3],
     /// Fraction bits of `rotation`: 14 at the scale 1, and its entries below 2^14 in size at any.
     shift: u32,
-    translation: [i32; 3],
+    /// Position of the origin of object space in eye space, Q18.14.
+    pub(crate) origin: [i32; 3],
     /// [`crate::format::Scale`] of the object.
-    scale: u32,
+    pub(crate) scale: u32,
     /// The projection from eye space to the screen.
     pub lens: Lens,
-    /// [`ModelView::inverse_scale`].
-    inverse_scale: u32,
-    /// For alignment.
-    reserved: u32,
 }
 
 impl View {
@@ -88,10 +85,8 @@ impl View {
             lens: *lens,
             rotation: map(model_view.rotation, |row| map(row, round)),
             shift: UNIT + 16 - exponent,
-            translation: model_view.translation,
+            origin: model_view.translation,
             scale,
-            inverse_scale: model_view.inverse_scale,
-            reserved: 0,
         }
     }
 
@@ -101,46 +96,13 @@ impl View {
     pub fn to_eye(&self, position: [i16; 3]) -> [i32; 3] {
         let [x, y, z] = self.rotation;
         let along = |row| narrow_dot(row, wide(position)) >> (self.shift & 31);
-        add([along(x), along(y), along(z)], self.translation)
-    }
-
-    /// Whether the camera is perspective, so that rays meet in the eye.
-    #[inline]
-    #[must_use]
-    pub fn is_perspective(&self) -> bool {
-        self.lens.is_perspective()
+        add([along(x), along(y), along(z)], self.origin)
     }
 
     /// How many bits the units of [`Self::viewer`] are smaller than those of object space; negative if they are larger.
     #[must_use]
     pub fn viewer_exponent(&self) -> i32 {
         UNIT as i32 - self.shift as i32
-    }
-
-    /// Converts `length` of the world to units of object space, in its format, rounded up.
-    #[must_use]
-    pub fn in_object_units(&self, length: u32) -> u64 {
-        // The inverse is rounded down; at the scale 1 it is exact, and the length as well.
-        let inexact = u32::from(self.scale != 1 << 16);
-        ((u64::from(length) * u64::from(self.inverse_scale + inexact)) >> 16) + u64::from(inexact)
-    }
-
-    /// The object's scale, [`crate::format::Scale`].
-    #[must_use]
-    pub fn scale(&self) -> u32 {
-        self.scale
-    }
-
-    /// Converts `length` of the world to units of object space, in its format, rounded down, saturating at 32 bits.
-    #[must_use]
-    pub fn least_in_object_units(&self, length: u32) -> u32 {
-        u32::try_from((u64::from(length) * u64::from(self.inverse_scale)) >> 16).unwrap_or(u32::MAX)
-    }
-
-    /// Position of the origin of object space in eye space, Q18.14.
-    #[must_use]
-    pub fn origin(&self) -> [i32; 3] {
-        self.translation
     }
 
     /// The eye in object space, Q18.14, or the direction towards the viewer under parallel rays, Q2.14, both in units that are as large as
@@ -152,10 +114,10 @@ impl View {
     #[must_use]
     pub fn viewer(&self, model_view: &ModelView) -> [i32; 3] {
         // Q.14, below 2^21 in size.
-        let from = if self.is_perspective() { self.translation } else { [0, 0, 1 << UNIT] };
+        let from = if self.lens.is_perspective() { self.origin } else { [0, 0, 1 << UNIT] };
         // Q.29, less half of its last place.
-        let from_finely = |c: i32| if self.is_perspective() { (2 * i64::from(c) - 1) << UNIT } else { i64::from(c) << (UNIT + 1) };
-        let back = |v| map(model_view.to_object(v), |c| (product(c, self.inverse_scale as i32) >> ((self.shift + 2) & 63)) as i32);
+        let from_finely = |c: i32| if self.lens.is_perspective() { (2 * i64::from(c) - 1) << UNIT } else { i64::from(c) << (UNIT + 1) };
+        let back = |v| map(model_view.to_object(v), |c| (product(c, model_view.inverse_scale as i32) >> ((self.shift + 2) & 63)) as i32);
         // What is left of the way there and back, Q.29, below 2^30 in size: the rotation has 2^-14 as its last place, as `viewer` has.
         let rest = |viewer| zip(self.rotation, from, |row, c| (2 * dot(row, viewer) + from_finely(c)) as i32);
         let step = |viewer| map(back(rest(viewer)), |c| (c + (1 << UNIT)) >> (UNIT + 1));
@@ -174,9 +136,9 @@ impl View {
     /// parallel rays. It includes 1/32 to spare, since a rotation is rounded.
     #[must_use]
     pub fn reach(&self, radius: u16) -> u32 {
-        let [x, y, z] = map(self.translation, i32::unsigned_abs);
+        let [x, y, z] = map(self.origin, i32::unsigned_abs);
         let radius = ((u64::from(radius) * u64::from(self.scale) + 0xFFFF) >> 16) as u32;
-        let reach = if self.is_perspective() { x + y + z + radius } else { 1 << UNIT };
+        let reach = if self.lens.is_perspective() { x + y + z + radius } else { 1 << UNIT };
         reach + (reach >> 5) + 1
     }
 
@@ -186,7 +148,7 @@ impl View {
     pub(crate) fn reached(&self, bounds: &BoundingVolume) -> (PixelRect, u16) {
         let sides = self.sides(bounds);
         let (size, [.., [nearest, farthest]]) = (self.lens.size(), sides);
-        if farthest < self.lens.near || !self.is_perspective() && nearest > self.lens.far {
+        if farthest < self.lens.near || !self.lens.is_perspective() && nearest > self.lens.far {
             return (PixelRect::NONE, 0);
         }
         if nearest < self.lens.near {
@@ -206,7 +168,7 @@ impl View {
         let (half, ball) = (map(bounds.half, i32::from), self.ball(bounds.radius));
         let half = map(self.rotation, |row| (narrow_dot(map(row, i32::abs), half) >> (self.shift & 31)) + 2);
         let sides = zip(self.to_eye(bounds.middle), half, |middle, half| [middle - half, middle + half]);
-        zip(sides, self.translation, |[least, most], origin| [least.max(origin - ball), most.min(origin + ball)])
+        zip(sides, self.origin, |[least, most], origin| [least.max(origin - ball), most.min(origin + ball)])
     }
 
     /// Converts the radius of a ball in object space, a [`crate::format::Radius`], to eye space, Q18.14, with a margin for rounding.
