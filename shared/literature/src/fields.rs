@@ -12,16 +12,19 @@ pub struct Steep<F> {
 }
 
 impl<F: Field> Field for Steep<F> {
-    type Value = F::Value;
     type Patch = F::Patch;
-    type Surface = F::Surface;
 
     fn fit(&self, gradients: &Gradients) -> F::Patch {
         self.field.fit(&gradients.steep(self.steepness))
     }
+}
 
-    fn surface(&self) -> F::Surface {
-        self.field.surface()
+impl<F: Surface> Surface for Steep<F> {
+    type Value = F::Value;
+
+    #[inline(always)]
+    fn at(&self, point: &Point) -> F::Value {
+        self.field.at(point)
     }
 }
 
@@ -30,16 +33,10 @@ impl<F: Field> Field for Steep<F> {
 pub struct Held<T>(pub T);
 
 impl<T: Copy> Field for Held<T> {
-    type Value = T;
     type Patch = Self;
-    type Surface = Self;
 
     #[inline(always)]
     fn fit(&self, _: &Gradients) -> Self {
-        *self
-    }
-
-    fn surface(&self) -> Self {
         *self
     }
 }

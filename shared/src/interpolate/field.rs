@@ -1,7 +1,7 @@
 //! Fields: quantities that a method interpolates over a triangle, on the screen or in perspective.
 //!
 //! A field has values at nodes of a triangle, and does not know where they lie on the screen. [`Field::fit`] makes a polynomial in screen
-//! coordinates, to be walked by additions. [`Field::surface`] makes a polynomial in barycentric coordinates, for [`crate::interpolate::perspective`].
+//! coordinates, to be walked by additions. In perspective the field itself is evaluated at barycentric coordinates, as a [`Surface`].
 
 use crate::{
     interpolate::{
@@ -14,19 +14,12 @@ use crate::{
 };
 
 /// A quantity that varies over a triangle.
-pub trait Field {
-    /// The value at a point.
-    type Value;
+pub trait Field: Surface {
     /// The field as a polynomial on the screen, without perspective.
     type Patch: Patch<Walker: Walker<Value = Self::Value> + Copy>;
-    /// The field as a polynomial in barycentric coordinates of the triangle.
-    type Surface: Surface<Value = Self::Value>;
 
     /// Fits the polynomial on the screen, on the triangle of `gradients`.
     fn fit(&self, gradients: &Gradients) -> Self::Patch;
-
-    /// Makes the polynomial in barycentric coordinates.
-    fn surface(&self) -> Self::Surface;
 }
 
 /// A polynomial through three or six nodes in each of `CH` channels: see [`Plane::fit`] and [`Quadric::fit`], which explain `BITS`.
@@ -54,46 +47,28 @@ impl<const N: usize, const CH: usize, const BITS: u32> Nodes<N, CH, BITS> {
 }
 
 impl<const CH: usize, const BITS: u32> Field for Nodes<3, CH, BITS> {
-    type Value = [u32; CH];
     type Patch = Plane<CH>;
-    type Surface = Self;
 
     #[inline(always)]
     fn fit(&self, gradients: &Gradients) -> Plane<CH> {
         Plane::fit::<BITS>(gradients, &self.values, self.extra, self.bias)
     }
-
-    fn surface(&self) -> Self {
-        *self
-    }
 }
 
 impl<const CH: usize, const BITS: u32> Field for Nodes<6, CH, BITS> {
-    type Value = [u32; CH];
     type Patch = Quadric<CH>;
-    type Surface = Self;
 
     #[inline(always)]
     fn fit(&self, gradients: &Gradients) -> Quadric<CH> {
         Quadric::fit::<BITS>(gradients, &self.values, self.extra, self.bias)
     }
-
-    fn surface(&self) -> Self {
-        *self
-    }
 }
 
 impl Field for Constant {
-    type Value = ();
     type Patch = Self;
-    type Surface = Self;
 
     #[inline(always)]
     fn fit(&self, _: &Gradients) -> Self {
-        Self
-    }
-
-    fn surface(&self) -> Self {
         Self
     }
 }
@@ -106,17 +81,11 @@ impl Surface for Constant {
 
 /// Two fields side by side.
 impl<A: Field, B: Field> Field for (A, B) {
-    type Value = (A::Value, B::Value);
     type Patch = (A::Patch, B::Patch);
-    type Surface = (A::Surface, B::Surface);
 
     #[inline(always)]
     fn fit(&self, gradients: &Gradients) -> Self::Patch {
         (self.0.fit(gradients), self.1.fit(gradients))
-    }
-
-    fn surface(&self) -> Self::Surface {
-        (self.0.surface(), self.1.surface())
     }
 }
 

@@ -338,13 +338,13 @@ impl Shading<'_> {
     {
         let gradients = setup.gradients;
         if PERSPECTIVE && let Some(inv_depth) = setup.inv_depth() {
-            let common = PerspectivePatch::new(gradients, inv_depth, common.surface());
+            let common = PerspectivePatch::new(gradients, inv_depth, common);
             let of = |source: &Source| match of(source) {
                 Lit::Nowhere => Lit::Nowhere,
-                Lit::Diffuse(field) => Lit::Diffuse(common.with(field.surface())),
-                Lit::Fully(field) => Lit::Fully(common.with(field.surface())),
+                Lit::Diffuse(field) => Lit::Diffuse(common.with(field)),
+                Lit::Fully(field) => Lit::Fully(common.with(field)),
             };
-            let walked = |way: Way| common.with(way.surface());
+            let walked = |way: Way| common.with(way);
             return self.draw_changing(setup, of, walked, |shares: QuadraticNodes<2>| common.with(shares), common, model, canvas);
         }
         let of = |source: &Source| match of(source) {

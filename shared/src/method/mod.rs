@@ -512,7 +512,7 @@ impl Area for TriangleSetup<'_> {
             return self.draw_textured(field, shader, canvas).unwrap_or(0);
         }
         if PERSPECTIVE && let Some(inv_depth) = self.inv_depth() {
-            let patch = PerspectivePatch::new(self.gradients, inv_depth, field.surface());
+            let patch = PerspectivePatch::new(self.gradients, inv_depth, *field);
             return self.draw_spans(&mut Shaded::new(patch, shader), canvas);
         }
         self.draw_spans(&mut Shaded::new(field.fit(self.gradients), shader), canvas)

@@ -136,7 +136,7 @@ impl TriangleSetup<'_> {
         let place = self.texture_patch().first().copied()??;
         let shader = OnTexture { sampler: place.sampler, shader };
         if PERSPECTIVE && let Some(inv_depth) = self.inv_depth() {
-            let patch = PerspectivePatch::new(self.gradients, inv_depth, field.surface());
+            let patch = PerspectivePatch::new(self.gradients, inv_depth, *field);
             return Some(self.draw_spans(&mut Shaded::new((patch, place), shader), canvas));
         }
         Some(self.draw_spans(&mut Shaded::new((field.fit(self.gradients), place), shader), canvas))

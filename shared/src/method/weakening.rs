@@ -11,7 +11,12 @@
 
 use crate::{
     format::{COSINE, PIXEL_COSINE},
-    interpolate::{Patch, Walker, field::Field, wide_quadric::WideQuadric},
+    interpolate::{
+        Patch, Walker,
+        field::Field,
+        perspective::{Point, Surface},
+        wide_quadric::WideQuadric,
+    },
     lighting::{
         lights::{Source, point},
         reflectance::Reflection,
@@ -38,16 +43,19 @@ pub(crate) struct Way {
 }
 
 impl Field for Way {
-    type Value = [u32; 2];
     type Patch = WideQuadric<2>;
-    type Surface = QuadraticNodes<2>;
 
     fn fit(&self, gradients: &Gradients) -> WideQuadric<2> {
         WideQuadric::fit(&gradients.steep(gradients.steepness().max(self.steepness)), &self.nodes)
     }
+}
 
-    fn surface(&self) -> QuadraticNodes<2> {
-        self.nodes
+impl Surface for Way {
+    type Value = [u32; 2];
+
+    #[inline(always)]
+    fn at(&self, point: &Point) -> [u32; 2] {
+        self.nodes.at(point)
     }
 }
 

@@ -102,16 +102,10 @@ pub struct TenNodes<const CH: usize> {
 }
 
 impl<const CH: usize> Field for TenNodes<CH> {
-    type Value = [u32; CH];
     type Patch = CubicPatch<CH>;
-    type Surface = Self;
 
     fn fit(&self, gradients: &Gradients) -> CubicPatch<CH> {
         CubicPatch::fit(gradients, &self.values, self.extra, self.bias)
-    }
-
-    fn surface(&self) -> Self {
-        *self
     }
 }
 
