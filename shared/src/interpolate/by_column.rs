@@ -54,8 +54,8 @@ impl<P: Patch<Walker: Copy>> Patch for ByColumn<P> {
     }
 
     #[inline(always)]
-    fn save(&self, words: &mut [u32]) -> bool {
-        self.0.save(words)
+    fn save(&self, words: &mut [u32]) {
+        self.0.save(words);
     }
 
     #[inline(always)]
@@ -82,9 +82,6 @@ impl Patch for Column {
     fn enter(&self, x: i32) -> ColumnWalker {
         ColumnWalker(x)
     }
-
-    /// More than there is room for.
-    const WORDS: usize = 1 << 8;
 }
 
 /// A column of a span.

@@ -37,14 +37,12 @@ pub trait Patch: Copy {
         self
     }
 
-    /// Number of words that [`Self::save`] writes.
-    const WORDS: usize = 0;
+    /// Number of words that [`Self::save`] writes. By default it is more than there is room for, so that the polynomial is not saved.
+    const WORDS: usize = 1 << 8;
 
-    /// Writes the polynomial to the first of `words`; false if it cannot be saved, or there are too few.
+    /// Writes the polynomial to the first of `words`, which are no fewer than [`Self::WORDS`].
     #[inline(always)]
-    fn save(&self, _words: &mut [u32]) -> bool {
-        false
-    }
+    fn save(&self, _words: &mut [u32]) {}
 
     /// The number of planes and the number of quadratics, for kernels. Planes come first. It is `None` if the polynomial has other parts or another order; no
     /// kernel draws it then.
@@ -135,10 +133,9 @@ impl Patch for Constant {
     fn enter(&self, _: i32) -> Self {
         Self
     }
-    #[inline(always)]
-    fn save(&self, _: &mut [u32]) -> bool {
-        true
-    }
+
+    const WORDS: usize = 0;
+
     #[inline(always)]
     fn load(_: &[u32]) -> Option<Self> {
         Some(Self)
@@ -190,9 +187,11 @@ impl<A: Patch, B: Patch> Patch for (A, B) {
     }
 
     #[inline(always)]
-    fn save(&self, words: &mut [u32]) -> bool {
-        let Some((first, rest)) = words.split_at_mut_checked(A::WORDS) else { return false };
-        self.0.save(first) && self.1.save(rest)
+    fn save(&self, words: &mut [u32]) {
+        if let Some((first, rest)) = words.split_at_mut_checked(A::WORDS) {
+            self.0.save(first);
+            self.1.save(rest);
+        }
     }
 
     #[inline(always)]

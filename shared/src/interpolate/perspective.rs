@@ -198,9 +198,6 @@ impl<S: Surface> Patch for Seen<S> {
     fn raised(self, by: &S::Value) -> Self {
         Self { surface: self.surface.raised(by), ..self }
     }
-
-    /// More than there is room for.
-    const WORDS: usize = 1 << 8;
 }
 
 /// A linear quantity for [`Seen`].

@@ -152,12 +152,11 @@ impl<const CH: usize> Patch for Plane<CH> {
     }
 
     #[inline(always)]
-    fn save(&self, words: &mut [u32]) -> bool {
+    fn save(&self, words: &mut [u32]) {
         let (rows, _) = words.as_chunks_mut::<3>();
         for (words, row) in rows.iter_mut().zip(&self.0) {
             *words = [row.c as u32, row.dx as u32, row.dy as u32];
         }
-        rows.len() >= CH
     }
 
     #[inline(always)]

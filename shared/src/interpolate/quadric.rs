@@ -186,12 +186,11 @@ impl<const CH: usize> Patch for Quadric<CH> {
     }
 
     #[inline(always)]
-    fn save(&self, words: &mut [u32]) -> bool {
+    fn save(&self, words: &mut [u32]) {
         let (rows, _) = words.as_chunks_mut::<6>();
         for (words, row) in rows.iter_mut().zip(&self.0) {
             *words = [row.c, row.c_down, row.c_down2, row.dx, row.dx_down, row.dxx].map(|c| c as u32);
         }
-        rows.len() >= CH
     }
 
     #[inline(always)]

@@ -43,9 +43,6 @@ impl<P: Patch<Walker: Walker<Value = [u32; 1]>>> Patch for Squares<P> {
         walker.now = walker.now.wrapping_add(HALF_RANGE.wrapping_mul(x) as u32);
         walker
     }
-
-    /// More than there is room for.
-    const WORDS: usize = 1 << 8;
 }
 
 impl<W: Walker<Value = [u32; 1]>> Walker for Squares<W> {

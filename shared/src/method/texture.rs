@@ -646,9 +646,6 @@ impl<'f, P: Patch<Walker: Walker<Value: AtPlace>>, const ALIGNED: bool> Patch fo
     fn enter(&self, x: i32) -> Self::Walker {
         Placed { place: self.place.enter(x), sampler: self.sampler }
     }
-
-    /// More than there is room for.
-    const WORDS: usize = 1 << 8;
 }
 
 impl<W: Walker<Value: AtPlace>, const ALIGNED: bool> Walker for Placed<'_, W, ALIGNED> {

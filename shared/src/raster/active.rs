@@ -34,12 +34,13 @@ impl ActiveTriangle {
     /// Words of a patch that can be saved: a quadratic in three channels.
     pub(crate) const WORDS: usize = 18;
 
-    /// Saves a triangle that has been stepped to the end of a band; false if the patch cannot be saved.
+    /// Saves a triangle that has been stepped to the end of a band. There is room for its patch.
     #[inline(always)]
-    pub(crate) fn save<D: Patch, P: Patch>(&mut self, (key, edges): (u32, EdgeState), depth: &D, patch: &P) -> bool {
-        self.has_depth = u16::from(D::WORDS > 0 && depth.save(&mut self.depth));
+    pub(crate) fn save<D: Patch, P: Patch>(&mut self, (key, edges): (u32, EdgeState), depth: &D, patch: &P) {
+        self.has_depth = u16::from(D::WORDS > 0);
+        depth.save(&mut self.depth);
         (self.key, self.edges) = (key, edges);
-        patch.save(&mut self.words)
+        patch.save(&mut self.words);
     }
 
     /// The plane of depth; `None` if the triangle is drawn without depth test.
@@ -108,17 +109,16 @@ impl<'a> ActiveTriangles<'a> {
         self.active_triangles.get(place)
     }
 
-    /// Puts a triangle at the end of the queue, if there is room and `fill` returns true.
+    /// Puts a triangle, which `fill` writes, at the end of the queue if there is room.
     #[inline(always)]
-    pub(crate) fn put(&mut self, fill: impl FnOnce(&mut ActiveTriangle) -> bool) {
+    pub(crate) fn put(&mut self, fill: impl FnOnce(&mut ActiveTriangle)) {
         let (QueueState { first, count }, length) = (self.queue, self.active_triangles.len());
         let place = first.wrapping_add(count);
         let place = if place < length { place } else { place.wrapping_sub(length) };
         if count >= length {
             self.overflow = self.overflow.saturating_add(1);
-        } else if let Some(active_triangle) = self.active_triangles.get_mut(place)
-            && fill(active_triangle)
-        {
+        } else if let Some(active_triangle) = self.active_triangles.get_mut(place) {
+            fill(active_triangle);
             active_triangle.choice = self.choice;
             self.queue.count = count + 1;
         }
@@ -133,21 +133,14 @@ mod tests {
     fn legs_come_out_in_the_order_they_went_in() {
         let mut active_triangles = [ActiveTriangle::EMPTY; 3];
         let mut active = ActiveTriangles::new(&mut active_triangles, QueueState::default());
-        let put = |active: &mut ActiveTriangles<'_>, key, fits| {
-            active.put(|active_triangle| {
-                active_triangle.key = key;
-                fits
-            });
-        };
+        let put = |active: &mut ActiveTriangles<'_>, key| active.put(|active_triangle| active_triangle.key = key);
         assert_eq!(active.take(1), None, "nothing is there");
-        // One cannot be kept, and the last one finds no room.
-        for (key, fits) in [(1, true), (3, false), (5, true), (7, true), (9, true)] {
-            put(&mut active, key, fits);
-        }
+        // The last one finds no room.
+        [1, 5, 7, 9].into_iter().for_each(|key| put(&mut active, key));
         assert_eq!(active.take(5), None, "not its turn");
         assert_eq!(active.take(1), Some(0));
         // The next band hands it on again: behind the others, around the end.
-        put(&mut active, 1, true);
+        put(&mut active, 1);
         let queue = active.queue();
         let mut active = ActiveTriangles::new(&mut active_triangles, queue);
         assert_eq!([5, 7, 9, 1].map(|key| active.take(key)), [Some(1), Some(2), None, Some(0)]);
