@@ -48,7 +48,7 @@ fn sign(set: &Set, neighbour: u16) -> Option<u32> {
 pub(crate) fn collect(set: &mut Set, entries: &[Entry], first: u32, triangles: u32) -> usize {
     let mut count = 0;
     for entry in entries {
-        let triangle = entry.key().triangle().wrapping_sub(first);
+        let triangle = entry.key.triangle().wrapping_sub(first);
         if triangle >= triangles {
             break;
         }
@@ -66,7 +66,7 @@ impl Outlined<'_> {
     #[inline(never)]
     pub(crate) fn outlines(&self, entries: &[Entry], first: u32, facing: &Set, put: &mut dyn FnMut(&Edge)) {
         for entry in entries {
-            let triangle = entry.key().triangle().wrapping_sub(first) as usize;
+            let triangle = entry.key.triangle().wrapping_sub(first) as usize;
             let Some(&Neighbours([a, b, c])) = self.neighbours.get(triangle) else { continue };
             // Most have neighbours that face the viewer, and no crease. No triangle has the number `OPEN`.
             if let (Some(one), Some(two), Some(three)) = (sign(facing, a), sign(facing, b), sign(facing, c))

@@ -373,8 +373,8 @@ impl<'r> FrameRows<'r> {
         self.stats.pixels = self.stats.pixels.saturating_add(pixels);
         self.stats.drawn += drawn;
         self.stats.counts = self.stats.counts.and(band.counts);
-        self.queue = band.active.queue();
-        self.stats.set_up_anew = self.stats.set_up_anew.saturating_add(band.active.overflow());
+        self.queue = band.active.queue;
+        self.stats.set_up_anew = self.stats.set_up_anew.saturating_add(band.active.overflow);
         self.drawn = bottom;
     }
 }

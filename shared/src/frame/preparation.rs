@@ -360,7 +360,7 @@ impl<'r> PreparationPart<'_, 'r> {
                 continue;
             };
             while let [entry, behind @ ..] = *entries
-                && let Some(triangle) = triangles.get(entry.key().triangle().wrapping_sub(placed.first_triangle) as usize)
+                && let Some(triangle) = triangles.get(entry.key.triangle().wrapping_sub(placed.first_triangle) as usize)
             {
                 *entries = behind;
                 for corner in triangle.corners.map(usize::from) {

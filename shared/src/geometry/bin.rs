@@ -53,23 +53,16 @@ impl TriangleKey {
 #[repr(C)]
 pub(crate) struct Entry {
     /// Key of the triangle.
-    key: TriangleKey,
+    pub(crate) key: TriangleKey,
     /// One past the last row of the triangle.
     bottom: u16,
     /// Link to the next entry.
     next: u16,
 }
 
+#[cfg(test)]
 impl Entry {
-    /// The key of the entry's triangle.
-    #[inline]
-    #[must_use]
-    pub(crate) fn key(&self) -> TriangleKey {
-        self.key
-    }
-
     /// An entry of zeros.
-    #[cfg(test)]
     pub(crate) const EMPTY: Self = Self { key: TriangleKey(0), bottom: 0, next: NONE };
 }
 

@@ -66,9 +66,10 @@ pub struct QueueState {
 #[derive(Debug, Default)]
 pub struct ActiveTriangles<'a> {
     active_triangles: &'a mut [ActiveTriangle],
-    queue: QueueState,
-    /// Number of triangles that found the queue full.
-    overflow: u32,
+    /// The state of the queue.
+    pub(crate) queue: QueueState,
+    /// Number of triangles of this band that found the queue full.
+    pub(crate) overflow: u32,
     /// What `auto` has chosen for the triangle that is drawn, for [`ActiveTriangle::choice`]. Other methods leave it as it is.
     pub(crate) choice: u16,
 }
@@ -78,18 +79,6 @@ impl<'a> ActiveTriangles<'a> {
     #[must_use]
     pub fn new(active_triangles: &'a mut [ActiveTriangle], queue: QueueState) -> Self {
         Self { active_triangles, queue, overflow: 0, choice: 0 }
-    }
-
-    /// Number of triangles of this band that found the queue full.
-    #[must_use]
-    pub fn overflow(&self) -> u32 {
-        self.overflow
-    }
-
-    /// The state of the queue.
-    #[must_use]
-    pub fn queue(&self) -> QueueState {
-        self.queue
     }
 
     /// Takes the first triangle off the queue if it has this `key`; returns its index. The entry stays valid until another triangle is put.
@@ -141,7 +130,7 @@ mod tests {
         assert_eq!(active.take(1), Some(0));
         // The next band hands it on again: behind the others, around the end.
         put(&mut active, 1);
-        let queue = active.queue();
+        let queue = active.queue;
         let mut active = ActiveTriangles::new(&mut active_triangles, queue);
         assert_eq!([5, 7, 9, 1].map(|key| active.take(key)), [Some(1), Some(2), None, Some(0)]);
         assert_eq!(active.take(1), None, "it is empty again");
