@@ -24,20 +24,14 @@ impl Counts {
     /// Adds two counts, for example of two parts of a picture. A sum beyond the largest `u32` wraps around.
     #[must_use]
     pub fn and(self, other: Self) -> Self {
-        let [one, linear, quadratic, cosines, exact] = self.choices;
-        let [a, b, c, d, e] = other.choices;
+        let mut choices = self.choices;
+        choices.iter_mut().zip(other.choices).for_each(|(sum, count)| *sum = sum.wrapping_add(count));
         Self {
             without_depth: self.without_depth.wrapping_add(other.without_depth),
             without_highlight: self.without_highlight.wrapping_add(other.without_highlight),
             without_light: self.without_light.wrapping_add(other.without_light),
             hidden: self.hidden.wrapping_add(other.hidden),
-            choices: [
-                one.wrapping_add(a),
-                linear.wrapping_add(b),
-                quadratic.wrapping_add(c),
-                cosines.wrapping_add(d),
-                exact.wrapping_add(e),
-            ],
+            choices,
         }
     }
 }
