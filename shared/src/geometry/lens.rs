@@ -238,7 +238,7 @@ fn shifted(value: i64, bits: u32) -> i32 {
 #[cold]
 #[inline(never)]
 fn slightly_shifted(value: i64, bits: u32) -> i32 {
-    saturated(scale(value, bits as i32))
+    scale(value, bits as i32).clamp(i32::MIN.into(), i32::MAX.into()) as i32
 }
 
 /// Clamps a coordinate to the guard band.
@@ -255,12 +255,6 @@ fn narrowed<const BITS: u32>(value: i64) -> i32 {
     const { assert!(BITS > 0 && BITS < 32) };
     let upper = ((value >> 32) as i32).clamp(-1 << (BITS - 1), (1 << (BITS - 1)) - 1);
     upper << (32 - BITS) | (value as u32 >> BITS) as i32
-}
-
-/// The nearest value that fits 32 bits.
-#[inline]
-fn saturated(value: i64) -> i32 {
-    value.clamp(i32::MIN.into(), i32::MAX.into()) as i32
 }
 
 /// Number of clip planes of [`Lens::distance`].
