@@ -194,9 +194,8 @@ impl Outlined<'_> {
     #[cold]
     #[inline(never)]
     fn clipped_depths(&self, triangle: &Triangle) -> [i32; 3] {
-        let [a, c, b] = triangle.corners.map(|corner| self.vertices.get(usize::from(corner)));
-        let (Some(a), Some(b), Some(c)) = (a, b, c) else { return [0; 3] };
-        let polygon = clip(self.view, [a, b, c]);
+        let Some(vertices) = triangle.vertices(self.vertices) else { return [0; 3] };
+        let polygon = clip(self.view, vertices);
         let depth = || polygon.iter().map(|cut| cut.place[2]);
         let (least, most) = (depth().min().unwrap_or(0), depth().max().unwrap_or(0));
         [least, most, most]
@@ -206,9 +205,7 @@ impl Outlined<'_> {
     #[inline(never)]
     pub(crate) fn faces(&self, triangle: u16, viewport: Viewport, area: Bounds) -> bool {
         let triangle = self.triangles.get(usize::from(triangle)).filter(|triangle| self.facing.may_face(triangle));
-        let Some([a, c, b]) = triangle.map(|triangle| triangle.corners) else { return false };
-        let [a, b, c] = [a, b, c].map(|corner| self.vertices.get(usize::from(corner)));
-        let (Some(a), Some(b), Some(c)) = (a, b, c) else { return false };
-        viewport.touches_by(self.view, [a, b, c], area)
+        let vertices = triangle.and_then(|triangle| triangle.vertices(self.vertices));
+        vertices.is_some_and(|vertices| viewport.touches_by(self.view, vertices, area))
     }
 }

@@ -468,9 +468,7 @@ fn touches(
     if let Some(corners) = stage.corners_at_seam(cached, seam, vertices, triangle) {
         return viewport.touches(&Extent::new(corners), area);
     }
-    let [a, c, b] = triangle.corners.map(|corner| vertices.get(usize::from(corner)));
-    let (Some(a), Some(b), Some(c)) = (a, b, c) else { return false };
-    viewport.touches_by(stage.view, [a, b, c], area)
+    triangle.vertices(vertices).is_some_and(|vertices| viewport.touches_by(stage.view, vertices, area))
 }
 
 /// Whether a triangle is word-sized, and its visible bounding box, where a corner belongs to the other half or needs clipping.

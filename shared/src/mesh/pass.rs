@@ -119,9 +119,7 @@ impl MeshPass<'_> {
     #[cold]
     #[inline(never)]
     fn transform_anew(&self, triangle: &Triangle, paint: Paint, target: &mut Target<'_>) -> u32 {
-        let [a, c, b] = triangle.corners.map(|corner| self.vertices.get(usize::from(corner)));
-        let (Some(a), Some(b), Some(c)) = (a, b, c) else { return 0 };
-        let vertices = [a, b, c];
+        let Some(vertices) = triangle.vertices(self.vertices) else { return 0 };
         let [a, b, c] = &vertices.map(|vertex| self.stage.transformed(vertex));
         // Decision: clip.
         if is_ready(&[a, b, c]) {

@@ -222,9 +222,7 @@ impl VertexStage<'_> {
     #[cold]
     #[inline(never)]
     pub(crate) fn bounds(&self, viewport: Viewport, vertices: &[Vertex], triangle: &Triangle) -> Option<Bounds> {
-        let [a, b, c] = triangle.corners.map(|corner| vertices.get(usize::from(corner)));
-        // Clockwise, which is against the order of the stream.
-        let vertices = [a?, c?, b?];
+        let vertices = triangle.vertices(vertices)?;
         let corners = vertices.map(|vertex| self.transformed(vertex));
         if corners.iter().all(|corner| corner.state == State::READY) {
             viewport.bounds_of(corners.each_ref())

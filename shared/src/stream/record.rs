@@ -546,6 +546,16 @@ pub struct Triangle {
     pub inverse_altitude: u16,
 }
 
+impl Triangle {
+    /// The triangle's own of the `vertices` of its mesh, clockwise on the screen, which is against the order of the record; `None` if one is
+    /// missing.
+    #[inline]
+    pub(crate) fn vertices<'a>(&self, vertices: &'a [Vertex]) -> Option<[&'a Vertex; 3]> {
+        let [a, c, b] = self.corners.map(|corner| vertices.get(usize::from(corner)));
+        Some([a?, b?, c?])
+    }
+}
+
 /// A colour of a palette: the part of the ambient and of the diffuse light that a surface reflects, besides what its material does. Highlights do not
 /// depend on it.
 #[derive(FromBytes, IntoBytes, Immutable, KnownLayout, Clone, Copy, Debug, PartialEq, Eq)]
