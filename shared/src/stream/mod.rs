@@ -22,8 +22,7 @@ pub use names::{Names, UnknownMesh};
 use record::{
     CAMERA_TRACK, Colour, CornerColours, Cut, EYE_SPACE, HAS_COLOURS, HAS_NEIGHBOURS, HAS_TEXTURE, Instance, Key, LARGEST_TEXTURE,
     LIGHT_TRACK, Label, Light, MAGIC, MAX_POSITION, Material, NO_OUTLINES, Neighbours, OBJECT_TRACK, OPEN, ORTHOGRAPHIC, OUTLINES_ALONE,
-    OWN_MATERIALS, PALETTE, PERSPECTIVE, POINT, RIGHT, SKY, Texture, TextureCorners, Track, Triangle, VERSION, VIEWER_INFINITE,
-    VIEWER_LOCAL, Vertex,
+    OWN_MATERIALS, PALETTE, PERSPECTIVE, POINT, RIGHT, SKY, Texture, TextureCorners, Track, Triangle, VERSION, VIEWER_LOCAL, Vertex,
 };
 #[doc(inline)]
 pub use record::{Camera, Header, Mesh};
@@ -315,19 +314,17 @@ impl<'a> Stream<'a> {
             return Err(StreamError::Version { found: header.version });
         }
         let stream = bytes.get(..header.length as usize).ok_or(truncated(header.length))?;
-        let need = length(header).ok_or(StreamError::Field { name: "count", record: 0 })?;
-        if need > header.length {
-            return Err(StreamError::Length { need, claimed: header.length });
-        }
+        let claimed = |need: Option<u32>| match need {
+            None => Err(StreamError::Field { name: "count", record: 0 }),
+            Some(need) if need > header.length => Err(StreamError::Length { need, claimed: header.length }),
+            Some(need) => Ok(need),
+        };
+        let need = claimed(length(header))?;
         let mut rest = stream.get(size_of::<Header>()..).ok_or(truncated(need))?;
         let meshes: &[Mesh] = take(&mut rest, header.meshes.into())?;
         let has_neighbours = meshes.first().is_some_and(|mesh| mesh.flags & HAS_NEIGHBOURS != 0);
         let neighbours = if has_neighbours { header.triangles } else { 0 };
-        let need = neighbours.checked_mul(size_of::<Neighbours>() as u32).and_then(|bytes| bytes.checked_add(need));
-        let need = need.ok_or(StreamError::Field { name: "count", record: 0 })?;
-        if need > header.length {
-            return Err(StreamError::Length { need, claimed: header.length });
-        }
+        claimed(neighbours.checked_mul(size_of::<Neighbours>() as u32).and_then(|bytes| bytes.checked_add(need)))?;
         Ok(Self {
             header,
             meshes,
@@ -505,8 +502,7 @@ impl<'a> Stream<'a> {
     #[doc(hidden)]
     #[must_use]
     pub fn is_constant(&self) -> bool {
-        let infinite = self.header.camera.viewer == VIEWER_INFINITE || self.header.camera.projection == ORTHOGRAPHIC;
-        infinite && self.lights.iter().all(|light| light.kind != POINT)
+        !self.header.camera.has_local_viewer() && self.lights.iter().all(|light| light.kind != POINT)
     }
 
     /// Returns `true` if the camera is a perspective one, and `false` if it is orthographic.
