@@ -32,6 +32,12 @@ struct Corner {
     attributes: Attributes,
 }
 
+impl Corner {
+    fn new(view: &View, &Vertex { position, normal }: &Vertex, attributes: Attributes) -> Self {
+        Self { eye: view.to_eye(position), position: wide(position), normal: wide(normal), attributes }
+    }
+}
+
 /// A corner after the cut: the object-space vertex and its place on the screen.
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct Cut {
@@ -55,7 +61,7 @@ pub(crate) fn clip_painted(view: &View, vertices: [&Vertex; 3], attributes: [[[i
     let mut polygon = Vec::<Corner, CORNERS>::new();
     for (k, v) in vertices.into_iter().enumerate() {
         let attributes = attributes.map(|attributes| attributes.get(k).copied().unwrap_or_default());
-        let _ = polygon.push(Corner { eye: view.to_eye(v.position), position: wide(v.position), normal: wide(v.normal), attributes });
+        let _ = polygon.push(Corner::new(view, v, attributes));
     }
     for plane in 0..PLANES {
         let mut cut = Vec::new();
@@ -85,13 +91,7 @@ pub(crate) fn clip_painted(view: &View, vertices: [&Vertex; 3], attributes: [[[i
 /// The part of an edge that can be projected, as `[x, y, inv_depth]` of its ends; `None` if there is none.
 #[must_use]
 pub(crate) fn clip_edge(view: &View, ends: [&Vertex; 2]) -> Option<[[i32; 3]; 2]> {
-    let corner = |v: &Vertex| Corner {
-        eye: view.to_eye(v.position),
-        position: wide(v.position),
-        normal: wide(v.normal),
-        attributes: [[0; 3]; COLOURED],
-    };
-    let [mut a, mut b] = ends.map(corner);
+    let [mut a, mut b] = ends.map(|v| Corner::new(view, v, [[0; 3]; COLOURED]));
     for plane in 0..PLANES {
         let (da, db) = (view.lens.distance(a.eye, plane), view.lens.distance(b.eye, plane));
         match (da >= 0, db >= 0) {
