@@ -213,11 +213,8 @@ impl<const CH: usize> Patch for Quadric<CH> {
                 d2: self.0.map(|row| row.dxx.wrapping_mul(2) as u32),
             };
         }
-        let mut walker = QuadraticWalker { value: [0; CH], d1: [0; CH], d2: [0; CH] };
-        each_channel::<CH>(|c| {
-            let [value, d1, d2] = self.0[c].at(x);
-            (walker.value[c], walker.d1[c], walker.d2[c]) = (value as u32, d1 as u32, d2 as u32);
-        });
+        let mut walker = QuadraticWalker::ZERO;
+        each_channel::<CH>(|c| walker.start(c, self.0[c].at(x)));
         walker
     }
 }
@@ -242,17 +239,15 @@ pub struct QuadraticWalker<const CH: usize> {
     d2: [u32; CH],
 }
 
-impl<const CH: usize> Default for QuadraticWalker<CH> {
-    fn default() -> Self {
-        Self { value: [0; CH], d1: [0; CH], d2: [0; CH] }
-    }
-}
-
 impl<const CH: usize> QuadraticWalker<CH> {
+    /// A walker of zeros.
+    pub(super) const ZERO: Self = Self { value: [0; CH], d1: [0; CH], d2: [0; CH] };
+
     /// Sets the value of a channel, its next difference, and the difference of differences.
     #[inline(always)]
     pub(super) fn start(&mut self, channel: usize, differences: [i32; 3]) {
-        [self.value[channel], self.d1[channel], self.d2[channel]] = differences.map(|difference| difference as u32);
+        let [value, d1, d2] = differences;
+        (self.value[channel], self.d1[channel], self.d2[channel]) = (value as u32, d1 as u32, d2 as u32);
     }
 }
 

@@ -54,7 +54,7 @@ impl<const CH: usize> Patch for WideQuadric<CH> {
     }
 
     fn enter(&self, x: i32) -> QuadraticWalker<CH> {
-        let mut walker = QuadraticWalker::default();
+        let mut walker = QuadraticWalker::ZERO;
         each_channel::<CH>(|c| walker.start(c, self.0[c].at(x.into()).map(|number| (number >> 32) as i32)));
         walker
     }
