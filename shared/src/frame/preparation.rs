@@ -184,8 +184,8 @@ impl<'r> Prepared<'r> {
     fn complete(&mut self, cache: &'r [ScreenVertex], depth_elision: Option<DepthElision>) {
         let Self { context, part } = self;
         (context.vertices, context.depth_elision) = (cache, depth_elision);
-        if let Some(count) = part.bins.count() {
-            (part.stats.passes, part.stats.drawn) = (1, part.bins.linked(count).into());
+        if part.bins.count().is_some() {
+            (part.stats.passes, part.stats.drawn) = (1, part.bins.linked().into());
             part.rows = part.bins.rows();
         }
         if ANTIALIAS && context.settings.has_edges() {

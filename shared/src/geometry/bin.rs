@@ -173,10 +173,10 @@ impl Bins {
         (self.top, self.bottom) = (self.top.min(earlier.top), self.bottom.max(earlier.bottom));
     }
 
-    /// Number of triangles in the lists, where there are `count` entries.
+    /// Number of triangles in the lists.
     #[must_use]
-    pub(crate) fn linked(&self, count: u16) -> u16 {
-        count.saturating_sub(self.kept)
+    pub(crate) fn linked(&self) -> u16 {
+        self.count.saturating_sub(self.kept)
     }
 
     /// Number of entries; `None` if some triangle found no room.
@@ -205,7 +205,7 @@ impl Bins {
                 *ends += 1;
             }
         }
-        let (mut wanted, mut row) = ((u32::from(self.linked(self.count)) * u32::from(share)) >> 16, start);
+        let (mut wanted, mut row) = ((u32::from(self.linked()) * u32::from(share)) >> 16, start);
         for ends in ends.map(u32::from) {
             match NonZeroU32::new(ends) {
                 Some(ends) if wanted < ends.get() => return row + wanted * step.get() / ends,
