@@ -17,7 +17,6 @@ macro_rules! features {
             pub const ALL: [Self; 11] = [$(Self::$feature),+];
 
             /// The name of the feature in `Cargo.toml`.
-            #[must_use]
             pub const fn name(self) -> &'static str {
                 match self {
                     $(Self::$feature => $name,)+
@@ -26,7 +25,6 @@ macro_rules! features {
 
             /// Whether the program has the feature.
             #[inline]
-            #[must_use]
             pub const fn is_on(self) -> bool {
                 match self {
                     $(Self::$feature => cfg!(feature = $name),)+

@@ -10,14 +10,12 @@ pub(crate) const HALVES: bool = cfg!(all(target_arch = "arm", not(target_has_ato
 
 /// Product `a b` in 64 bits, in the product of the formats. Domain: every `i32`. Exact.
 #[inline]
-#[must_use]
 pub(crate) fn product(a: i32, b: i32) -> i64 {
     if HALVES { whole_by_halves(a, b) } else { i64::from(a) * i64::from(b) }
 }
 
 /// Unsigned product `a b` in 64 bits, in the product of the formats. Domain: every `u32`. Exact.
 #[inline]
-#[must_use]
 pub(crate) fn unsigned_product(a: u32, b: u32) -> u64 {
     if HALVES { unsigned_by_halves(a, b) } else { u64::from(a) * u64::from(b) }
 }
@@ -26,28 +24,24 @@ pub(crate) fn unsigned_product(a: u32, b: u32) -> u64 {
 ///
 /// Source: Knuth, The Art of Computer Programming 4.3.1, Algorithm M; Warren, Hacker's Delight 8-2.
 #[inline]
-#[must_use]
 pub fn upper(a: i32, b: i32) -> i32 {
     if HALVES { upper_by_halves(a, b) } else { ((i64::from(a) * i64::from(b)) >> 32) as i32 }
 }
 
 /// Upper half of a product, for the pixel loop: `a b / 2^32`, rounded down. Domain: `b` is a multiple of 2^16. Exact.
 #[inline]
-#[must_use]
 pub(crate) fn upper_by_half_word(a: i32, b: i32) -> i32 {
     if HALVES { by_half_word(a, b >> 16) } else { ((i64::from(a) * i64::from(b)) >> 32) as i32 }
 }
 
 /// Product with a fraction: `a b / 2^16`, rounded down, in the format of `a`. Domain: `b` is unsigned Q0.16. Exact.
 #[inline]
-#[must_use]
 pub(crate) fn by_fraction(a: i32, b: u16) -> i32 {
     if HALVES { by_half_word(a, b.into()) } else { ((i64::from(a) * i64::from(b)) >> 16) as i32 }
 }
 
 /// Product of an unsigned number with a fraction: `a b / 2^16`, rounded down, in the format of `a`. Domain: `b` is unsigned Q0.16. Exact.
 #[inline]
-#[must_use]
 pub(crate) fn unsigned_by_fraction(a: u32, b: u16) -> u32 {
     if HALVES { unsigned_by_half_word(a, b.into()) } else { ((u64::from(a) * (u64::from(b) << 16)) >> 32) as u32 }
 }
@@ -56,7 +50,6 @@ pub(crate) fn unsigned_by_fraction(a: u32, b: u16) -> u32 {
 ///
 /// Domain: `a` and `b` within ±2^30, `x` and `y` multiples of 2^16, so that the sum fits 63 bits. Exact (tests::dots_make_the_same).
 #[inline]
-#[must_use]
 pub(crate) fn upper_dot([a, b]: [i32; 2], [x, y]: [i32; 2]) -> i32 {
     if HALVES { dot_by_halves([a, b], [x >> 16, y >> 16]) } else { ((product(a, x) + product(b, y)) >> 32) as i32 }
 }
@@ -65,7 +58,6 @@ pub(crate) fn upper_dot([a, b]: [i32; 2], [x, y]: [i32; 2]) -> i32 {
 ///
 /// Domain: `left` is less than 32. Exact (tests::shifts_make_the_same).
 #[inline(always)]
-#[must_use]
 pub(crate) fn rounded(product: i64, left: u32) -> i32 {
     let product = product.wrapping_add(((1u32 << 31) >> left).into());
     let (upper, lower) = ((product >> 32) as u32, product as u32);
@@ -76,7 +68,6 @@ pub(crate) fn rounded(product: i64, left: u32) -> i32 {
 ///
 /// Domain: `left` is 1 to 31. Exact (tests::shifts_make_the_same).
 #[inline(always)]
-#[must_use]
 pub(crate) fn shifted(product: i64, left: u32) -> i32 {
     let (upper, lower) = ((product >> 32) as u32, product as u32);
     (upper.wrapping_shl(left) | lower.wrapping_shr(32 - left)) as i32

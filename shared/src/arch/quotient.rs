@@ -32,7 +32,6 @@ pub(crate) const SLOPE: u32 = 21;
 /// Domain: `n` is -1023 to 1023, `d` is 1 to [`LARGEST`]; other arguments give a number without meaning. Exact
 /// (tests::every_slope_is_exact, on every argument). Source: a reciprocal from a table, corrected by the remainder.
 #[inline]
-#[must_use]
 pub(crate) fn slope(n: i32, d: i32) -> i32 {
     if HALVES { by_table(n, d) } else { (n << SLOPE).div_euclid(d.max(1)) }
 }
@@ -82,7 +81,6 @@ static SEEDS: [u16; 256] = {
 /// Domain: `d` is 2^15 to 2^16 - 1. Exact (tests::every_inverse_is_exact, on every argument). Source: one step of the method of Newton
 /// from a table, corrected by the remainder.
 #[inline(always)]
-#[must_use]
 pub(crate) fn inverse(d: u32) -> u32 {
     // Setting the bit, which is set, shows the compiler that the divisor is not 0.
     if HALVES { inverse_by_table(d) } else { u32::MAX / (d | 1 << 15) }
@@ -111,7 +109,6 @@ fn inverse_by_table(d: u32) -> u32 {
 ///
 /// Domain: `n` is at most `d`, and `d` is 1 to 2^16 - 1. Exact (tests::fractions_are_exact). Source: the reciprocal, corrected by the remainder.
 #[inline(always)]
-#[must_use]
 pub(crate) fn fraction(n: u32, d: u32, (reciprocal, zeros): (u32, u32)) -> (u32, u32) {
     if HALVES { fraction_by_inverse(n, d, (reciprocal, zeros)) } else { ((n << 16) / d.max(1), (n << 16) % d.max(1)) }
 }
@@ -131,7 +128,6 @@ fn fraction_by_inverse(n: u32, d: u32, (reciprocal, zeros): (u32, u32)) -> (u32,
 
 /// Quotient `n / d` of long numbers, rounded down; 0 if `d` is 0. Exact (tests::long_quotients_are_exact).
 #[inline]
-#[must_use]
 pub(crate) fn long(n: u64, d: u64) -> u64 {
     if cfg!(target_pointer_width = "32") { long_by_words(n, d) } else { n.checked_div(d).unwrap_or(0) }
 }
@@ -158,7 +154,6 @@ fn long_by_words(n: u64, d: u64) -> u64 {
 
 /// [`long`] of a number with a sign, rounded down.
 #[inline(always)]
-#[must_use]
 pub(crate) fn signed_long(n: i64, d: u64) -> i64 {
     // Of a negative number: what is left of its size is below it, so that its complement is divided.
     let sign = n >> 63;
@@ -170,7 +165,6 @@ pub(crate) fn signed_long(n: i64, d: u64) -> i64 {
 ///
 /// Source: Knuth, The Art of Computer Programming 4.3.1, Algorithm D; Warren, Hacker's Delight 9-3, in digits of half a word.
 #[inline(never)]
-#[must_use]
 pub(crate) fn by_word([upper, lower]: [u32; 2], divisor: NonZeroU32) -> (u32, u32) {
     let up = divisor.leading_zeros();
     let divisor = divisor.get() << up;

@@ -20,7 +20,6 @@ static ZEROS: [u8; 64] = {
 /// Domain: `x` is less than 2^24. Exact (tests::zeros_are_counted, on every argument).
 /// Source: a table of six bits at a time, where the machine has no instruction for it (Warren, Hacker's Delight 5-3).
 #[inline]
-#[must_use]
 pub(crate) fn leading_zeros(x: u32) -> u32 {
     if HALVES { by_table(x) } else { x.leading_zeros() }
 }

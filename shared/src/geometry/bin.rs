@@ -28,21 +28,18 @@ impl TriangleKey {
 
     /// Index of the triangle in the stream.
     #[inline]
-    #[must_use]
     pub(crate) fn triangle(self) -> u32 {
         self.0 >> 1
     }
 
     /// Whether the triangle was pushed as word-sized, see [`Bins::push`].
     #[inline]
-    #[must_use]
     pub(crate) fn is_word_sized(self) -> bool {
         self.0 & 1 != 0
     }
 
     /// The key as a word, which is not 0 if the triangle is word-sized.
     #[inline]
-    #[must_use]
     pub(crate) fn word(self) -> u32 {
         self.0
     }
@@ -93,7 +90,6 @@ pub(crate) struct Bins {
 impl Bins {
     /// Empty lists for a picture of `height` rows that is drawn `band_rows` rows at a time. A bin is at least as high as a band, so that each band
     /// merges one list.
-    #[must_use]
     pub(crate) fn new(height: u32, band_rows: u32) -> Self {
         Self {
             heads: [NONE; BINS],
@@ -149,7 +145,6 @@ impl Bins {
 
     /// Copies the bins without their triangles. Each list ends with the number of its bin, so that [`Self::join`] can append other lists. A frame has
     /// less than 2^15 triangles.
-    #[must_use]
     pub(crate) fn open(&self) -> Self {
         Self { heads: array::from_fn(|bin| OPEN | bin as u16), ..self.clone() }
     }
@@ -174,26 +169,22 @@ impl Bins {
     }
 
     /// Number of triangles in the lists.
-    #[must_use]
     pub(crate) fn linked(&self) -> u16 {
         self.count.saturating_sub(self.kept)
     }
 
     /// Number of entries; `None` if some triangle found no room.
-    #[must_use]
     pub(crate) fn count(&self) -> Option<u16> {
         (!self.overflow).then_some(self.count)
     }
 
     /// The rows from the top of the highest triangle to the bottom of the lowest.
-    #[must_use]
     pub(crate) fn rows(&self) -> Range<u32> {
         self.top.min(self.bottom)..self.bottom
     }
 
     /// The row above which a `share` of the triangles end, in units of 1/65,536. Two processors share the work in about this proportion if the frame
     /// is divided there.
-    #[must_use]
     pub(crate) fn row_at(&self, entries: &[Entry], share: u16) -> u32 {
         let Range { start, end } = self.rows();
         let step = NonZeroU32::new((end - start).div_ceil(BINS as u32)).unwrap_or(NonZeroU32::MIN);

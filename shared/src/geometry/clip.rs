@@ -50,13 +50,11 @@ pub(crate) struct Cut {
 }
 
 /// The part of a triangle that can be projected: a fan around its first corner; empty if there is none.
-#[must_use]
 pub(crate) fn clip(view: &View, vertices: [&Vertex; 3]) -> Vec<Cut, CORNERS> {
     clip_painted(view, vertices, [[[0; 3]; 3]; COLOURED])
 }
 
 /// [`clip`], where the corners have these attributes.
-#[must_use]
 pub(crate) fn clip_painted(view: &View, vertices: [&Vertex; 3], attributes: [[[i32; 3]; 3]; COLOURED]) -> Vec<Cut, CORNERS> {
     let mut polygon = Vec::<Corner, CORNERS>::new();
     for (k, v) in vertices.into_iter().enumerate() {
@@ -89,7 +87,6 @@ pub(crate) fn clip_painted(view: &View, vertices: [&Vertex; 3], attributes: [[[i
 }
 
 /// The part of an edge that can be projected, as `[x, y, inv_depth]` of its ends; `None` if there is none.
-#[must_use]
 pub(crate) fn clip_edge(view: &View, ends: [&Vertex; 2]) -> Option<[[i32; 3]; 2]> {
     let [mut a, mut b] = ends.map(|v| Corner::new(view, v, [[0; 3]; COLOURED]));
     for plane in 0..PLANES {
@@ -127,7 +124,6 @@ fn mix(a: [i32; 3], b: [i32; 3], t: i64) -> [i32; 3] {
 
 /// The record of one triangle of the fan, cut from `whole`: indices and edge constants are of the new `corners`, which turn
 /// clockwise on the screen, against the order of a record.
-#[must_use]
 pub(crate) fn record(whole: &Triangle, corners: &[Vertex; 3]) -> Triangle {
     let [a, b, c] = corners.map(|corner| wide(corner.normal));
     let edges = [edge(c, a), edge(b, c), edge(a, b)];

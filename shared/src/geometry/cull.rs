@@ -81,7 +81,6 @@ impl Facing {
 
     /// The test for a mesh in the ball of `radius` about the origin, [`crate::stream::record::Header::radius`], at the place `model_view`, seen as
     /// `view` says.
-    #[must_use]
     pub fn new(view: &View, model_view: &ModelView, radius: u16) -> Self {
         let (vector, reach) = (view.viewer(model_view), view.reach(radius));
         // In object space: rounding moves a corner by as much more as the object is small.
@@ -112,7 +111,6 @@ impl Facing {
 
     /// Whether `triangle` may show its front. If in doubt the answer is yes, and the signed area on the screen decides.
     #[inline]
-    #[must_use]
     pub fn may_face(&self, triangle: &Triangle) -> bool {
         self.height(triangle) >= Self::FRONT
     }
@@ -122,7 +120,6 @@ impl Facing {
 
     /// The height of the eye above the plane of `triangle`, plus the slack that makes up for its rounded corners.
     #[inline]
-    #[must_use]
     pub(crate) fn height(&self, triangle: &Triangle) -> i32 {
         let plane = i32::from(triangle.offset).wrapping_mul(self.offset_scale);
         let height = narrow_dot(self.vector, wide(triangle.normal)).wrapping_sub(plane) >> (EYE + UNIT - HEIGHT);
@@ -131,7 +128,6 @@ impl Facing {
 
     /// Smallest [`Self::height`] above triangles that could show their front if their plane leaned as far as [`crate::stream::record::CLOSED_CONVEX`]
     /// allows.
-    #[must_use]
     pub(crate) fn leaning(&self) -> i32 {
         // An angle of 2^-LEAN, seen from as far as any vertex is.
         Self::FRONT - ((self.reach << (HEIGHT - UNIT)) >> LEAN)
@@ -156,7 +152,6 @@ pub struct Extent {
 impl Extent {
     /// The extent of corners `[x, y]` that run clockwise as seen from the front.
     #[inline]
-    #[must_use]
     pub fn new([[x0, y0], [x1, y1], [x2, y2]]: [[i32; 2]; 3]) -> Self {
         // From the first corner, because comparisons with zero are single instructions.
         let (x1, y1, x2, y2) = (x1 - x0, y1 - y0, x2 - x0, y2 - y0);
@@ -169,14 +164,12 @@ impl Extent {
 
     /// Whether the triangle is word-sized, see [`fits_words`].
     #[inline(always)]
-    #[must_use]
     pub(crate) fn fits_words(&self) -> bool {
         fits_words(((self.right - self.left) | (self.bottom - self.top)) as u32, self.area)
     }
 
     /// An upper bound of the longest side: the larger of width and height plus half of the other, since x² + y² <= (x + y/2)² where y <= x.
     #[inline]
-    #[must_use]
     pub fn length(&self) -> i32 {
         let (width, height) = (self.right - self.left, self.bottom - self.top);
         width.max(height) + ((width.min(height) + 1) >> 1)

@@ -49,7 +49,6 @@ pub(crate) struct DepthElision {
 
 impl DepthElision {
     /// A grid without marks for one frame of a single closed convex mesh; `None` if the mesh is too near.
-    #[must_use]
     pub(crate) fn new(view: &View) -> Option<Self> {
         let (lens, size) = (&view.lens, view.lens.size());
         let thickness = lens.moved(3);
@@ -87,7 +86,6 @@ impl DepthElision {
     }
 
     /// Takes the triangles into account that `other` has included.
-    #[must_use]
     pub(crate) fn and(mut self, other: &Self) -> Self {
         self.marked.iter_mut().zip(other.marked).for_each(|(row, columns)| *row |= columns);
         self
@@ -95,7 +93,6 @@ impl DepthElision {
 
     /// Whether other triangles may overlap one in these columns and rows. Call it once all triangles have been included.
     #[inline(never)]
-    #[must_use]
     pub(crate) fn needs_depth_test(&self, columns: [i32; 2], rows: [i32; 2]) -> bool {
         if !self.is_inside(columns, rows) {
             return true;

@@ -25,7 +25,6 @@ use embedded_graphics_core::geometry::Size;
 ///
 /// Domain: a checked camera, sides up to [`crate::MAX_SIDE`]. Error: at most 4 % too little in views of up to 53 degrees along the diagonal, 9 % in
 /// views of up to 90 degrees, the margin included (tests::no_less_than_need_be). Source: the formula above.
-#[must_use]
 pub fn tolerance(camera: &Camera, depth: i32, radius: u32, size: Size) -> GeometricError {
     let (width, height) = (size.width, size.height);
     let (depth, square) = if camera.projection == PERSPECTIVE {
@@ -43,7 +42,6 @@ pub fn tolerance(camera: &Camera, depth: i32, radius: u32, size: Size) -> Geomet
 }
 
 /// The [`tolerance`] for the whole stream, as its camera sees it in all frames.
-#[must_use]
 pub fn stream_tolerance(header: &Header, size: Size) -> GeometricError {
     tolerance(&header.camera, header.camera.translation[2], header.radius.into(), size)
 }

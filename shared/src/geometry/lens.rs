@@ -62,7 +62,6 @@ pub struct Lens {
 
 impl Lens {
     /// The projection of `camera` onto a viewport of `size` pixels.
-    #[must_use]
     pub fn new(camera: &Camera, size: Size) -> Self {
         let smaller = size.width.min(size.height);
         let focal = (i64::from(smaller) << (SUBPIXEL - 1)) * i64::from(camera.focal);
@@ -91,7 +90,6 @@ impl Lens {
     /// Projects a point of eye space to `[x, y, inv_depth]` on the screen, and tells whether it lies behind the near plane and within the guard band.
     /// Other points are moved there; only clipping, which rounds, may use them.
     #[inline(always)]
-    #[must_use]
     pub fn project(&self, eye: [i32; 3]) -> ([i32; 3], bool) {
         let [x, y, z] = eye;
         let (behind, z) = (z >= self.near, z.max(self.near));
@@ -109,7 +107,6 @@ impl Lens {
 
     /// Projects a box of eye space behind the near plane, given by `[least, most]` coordinates. Returns `[left, right]` and `[top, bottom]`, in 1/16
     /// pixel, and the largest inverse depth, Q0.28.
-    #[must_use]
     pub fn project_box(&self, [across, up, [nearest, farthest]]: [[i32; 2]; 3]) -> ([[i32; 2]; 2], i32) {
         // Each side is seen farthest out where it is nearest, or, across the middle of the screen, farthest.
         let (near, far) = (Reciprocal::of(nearest), Reciprocal::of(farthest));
@@ -152,13 +149,11 @@ impl Lens {
 
     /// Whether the camera is perspective, so that rays meet in the eye.
     #[inline]
-    #[must_use]
     pub fn is_perspective(&self) -> bool {
         self.is_perspective != 0
     }
 
     /// Pixels of the viewport.
-    #[must_use]
     pub fn size(&self) -> Size {
         let [width, height] = self.centre;
         Size::new(width as u32 >> (SUBPIXEL - 1), height as u32 >> (SUBPIXEL - 1))
@@ -169,7 +164,6 @@ impl Lens {
     /// In eye space that is half a unit in the last place along each axis, √3/2 = 0.87 in all; on the screen along both axes half of 1/16
     /// pixel, with 2^-7 to spare for the arithmetic on the way: √2 · 65/128 = 0.72 of 1/16 pixel. With room for a rotation that is rounded
     /// they are one unit and 25/32.
-    #[must_use]
     pub fn displacement(&self, reach: u32) -> u32 {
         let pixel = (u64::from(reach) * u64::from(self.unit_per_pixel)) >> PER_PIXEL;
         u32::try_from(pixel + 1 + (1 << (30 - UNIT))).unwrap_or(u32::MAX)
@@ -177,7 +171,6 @@ impl Lens {
 
     /// Largest distance along x or y by which rounding may move a point of a mesh that is marked as [`crate::stream::record::CLOSED_CONVEX`] and lies
     /// behind the near plane; `times` this distance, in 1/16 pixel, rounded up.
-    #[must_use]
     pub fn moved(&self, times: u32) -> u32 {
         let focal = (self.focal >> 16) as u32;
         let (beside, unit) = if self.is_perspective() {
@@ -194,7 +187,6 @@ impl Lens {
     }
 
     /// The distance of `eye` from a clip plane (near, then the guard band's left, right, bottom, top); negative outside.
-    #[must_use]
     pub fn distance(&self, eye: [i32; 3], plane: usize) -> i64 {
         let [x, y, z] = eye.map(i64::from);
         let along = match plane {

@@ -33,7 +33,6 @@ pub struct ModelView {
 
 impl ModelView {
     /// The transformation of the world to eye space in frame `number` of the camera's orbit.
-    #[must_use]
     pub fn new(camera: &Camera, number: u32) -> Self {
         let one = 1 << ROTATION;
         Self {
@@ -47,7 +46,6 @@ impl ModelView {
     }
 
     /// The transformation of an object with this `pose` in the world.
-    #[must_use]
     pub fn of(&self, pose: &Pose) -> Self {
         if *pose == Pose::IDENTITY {
             return *self;
@@ -66,13 +64,11 @@ impl ModelView {
     }
 
     /// Converts a direction of eye space to object space, in the format of `v`, rounded down.
-    #[must_use]
     pub fn to_object(&self, v: [i32; 3]) -> [i32; 3] {
         rotated_back(self.rotation, v)
     }
 
     /// Converts a direction of the world to object space, in the format of `v`, rounded down.
-    #[must_use]
     pub fn world_to_object(&self, v: [i32; 3]) -> [i32; 3] {
         rotated_back(self.to_world, v)
     }
@@ -81,7 +77,6 @@ impl ModelView {
     /// long for this is shortened, see [`FARTHEST`]. For an object of radius 1 this changes the direction of a point 56 units away or farther by at
     /// most 1/56 rad.
     #[inline(never)]
-    #[must_use]
     pub fn point_to_object(&self, point: [i32; 3], is_eye_space: bool) -> [i32; 3] {
         let point = self.unlimited(point, is_eye_space);
         if point.iter().all(|c| c.abs() <= FARTHEST) {
@@ -92,19 +87,16 @@ impl ModelView {
     }
 
     /// The eye in object space, Q7.25; see [`FARTHEST`].
-    #[must_use]
     pub fn eye(&self) -> [i32; 3] {
         self.point_to_object([0; 3], true)
     }
 
     /// Converts a length of the world to units of object space, in its format, rounded down.
-    #[must_use]
     pub fn in_object_units(&self, length: i32) -> i32 {
         ((i64::from(length) * i64::from(self.inverse_scale)) >> 16) as i32
     }
 
     /// Converts `length` of the world to units of object space, in its format, rounded up.
-    #[must_use]
     pub fn most_in_object_units(&self, length: u32) -> u64 {
         // The inverse is rounded down; at the scale 1 it is exact, and the length as well.
         let inexact = u32::from(self.scale != 1 << 16);
@@ -122,7 +114,6 @@ impl ModelView {
 
     /// The squared length, Q.38, of the vector from the object's centre to a point, if the point is so far away that [`Self::point_to_object`]
     /// shortens the vector to [`FARTHEST_UNITS`].
-    #[must_use]
     pub fn shortened(&self, point: [i32; 3], is_eye_space: bool) -> Option<u64> {
         let way = self.unlimited(point, is_eye_space);
         let shorter = way.map(|c| (c >> 6) as i32);

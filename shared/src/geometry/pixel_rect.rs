@@ -22,13 +22,11 @@ impl PixelRect {
     pub const NONE: Self = Self { columns: [0; 2], rows: [0; 2] };
 
     /// All pixels of a viewport of `size`, no larger than [`crate::MAX_SIDE`].
-    #[must_use]
     pub fn whole(size: Size) -> Self {
         Self { columns: [0, size.width as u16], rows: [0, size.height as u16] }
     }
 
     /// The pixels of `rectangle` that belong to a viewport of `size`, no larger than [`crate::MAX_SIDE`].
-    #[must_use]
     pub fn of(rectangle: Rectangle, size: Size) -> Self {
         let range = |start: i32, length: u32, side: u32| {
             [start, start.saturating_add_unsigned(length)].map(|place| place.clamp(0, side as i32) as u16)
@@ -38,14 +36,12 @@ impl PixelRect {
     }
 
     /// Whether the rectangle has no pixel.
-    #[must_use]
     pub fn is_empty(&self) -> bool {
         let is_empty = |[start, end]: [u16; 2]| start >= end;
         is_empty(self.columns) || is_empty(self.rows)
     }
 
     /// The smallest rectangle that contains both. An empty one is left out.
-    #[must_use]
     pub fn union(&self, other: &Self) -> Self {
         let hull = |[start, end]: [u16; 2], other: [u16; 2]| [start.min(other[0]), end.max(other[1])];
         match (self.is_empty(), other.is_empty()) {
@@ -56,14 +52,12 @@ impl PixelRect {
     }
 
     /// The pixels that belong to both rectangles.
-    #[must_use]
     pub fn within(&self, other: &Self) -> Self {
         let within = |[start, end]: [u16; 2], other: [u16; 2]| [start.max(other[0]), end.min(other[1])];
         Self { columns: within(self.columns, other.columns), rows: within(self.rows, other.rows) }
     }
 
     /// The pixels of the rectangle and those up to `reach` pixels away, in a picture of `size`. An empty rectangle stays empty.
-    #[must_use]
     pub fn grown(&self, reach: u16, size: Size) -> Self {
         let grown = |[start, end]: [u16; 2]| [start.saturating_sub(reach), end.saturating_add(reach)];
         let Self { columns, rows } = *self;
@@ -71,21 +65,18 @@ impl PixelRect {
     }
 
     /// The columns of the rectangle.
-    #[must_use]
     pub fn columns(&self) -> Range<u32> {
         let [start, end] = self.columns;
         start.into()..end.into()
     }
 
     /// The rows of the rectangle.
-    #[must_use]
     pub fn rows(&self) -> Range<u32> {
         let [start, end] = self.rows;
         start.into()..end.into()
     }
 
     /// Converts the area to a rectangle of embedded-graphics.
-    #[must_use]
     pub fn rectangle(&self) -> Rectangle {
         let (columns, rows) = (self.columns(), self.rows());
         Rectangle::new(

@@ -74,7 +74,6 @@ pub struct View {
 
 impl View {
     /// The view of an object at the place `model_view` through `lens`.
-    #[must_use]
     pub fn new(lens: &Lens, model_view: &ModelView) -> Self {
         let scale = model_view.scale.max(1);
         // The scale is a mantissa of at most 1, Q1.30, times a power of two: 2^(exponent - 16).
@@ -92,7 +91,6 @@ impl View {
 
     /// Converts a position to eye space, Q18.14.
     #[inline]
-    #[must_use]
     pub fn to_eye(&self, position: [i16; 3]) -> [i32; 3] {
         let [x, y, z] = self.rotation;
         let along = |row| narrow_dot(row, wide(position)) >> (self.shift & 31);
@@ -100,7 +98,6 @@ impl View {
     }
 
     /// How many bits the units of [`Self::viewer`] are smaller than those of object space; negative if they are larger.
-    #[must_use]
     pub fn viewer_exponent(&self) -> i32 {
         UNIT as i32 - self.shift as i32
     }
@@ -111,7 +108,6 @@ impl View {
     ///
     /// Error: less than one and a half units in the last place along each axis of the eye (tests::viewer_inverts_the_way_to_eye_space).
     /// Source: refinement (Wilkinson 1963) of the way back by the transpose, which is the inverse of an exact rotation.
-    #[must_use]
     pub fn viewer(&self, model_view: &ModelView) -> [i32; 3] {
         // Q.14, below 2^21 in size.
         let from = if self.lens.is_perspective() { self.origin } else { [0, 0, 1 << UNIT] };
@@ -134,7 +130,6 @@ impl View {
 
     /// Upper bound of the distance between the eye and a vertex of a mesh in the ball of `radius` about the origin, Q18.14; 1 under
     /// parallel rays. It includes 1/32 to spare, since a rotation is rounded.
-    #[must_use]
     pub fn reach(&self, radius: u16) -> u32 {
         let [x, y, z] = map(self.origin, i32::unsigned_abs);
         let radius = ((u64::from(radius) * u64::from(self.scale) + 0xFFFF) >> 16) as u32;
@@ -144,7 +139,6 @@ impl View {
 
     /// The pixels of the viewport that a part of object space can reach, and the nearest depth of such a pixel, in the format of the depth buffer.
     /// None if no part of it can be seen. If in doubt, there are more pixels and nearer depths.
-    #[must_use]
     pub(crate) fn reached(&self, bounds: &BoundingVolume) -> (PixelRect, u16) {
         let sides = self.sides(bounds);
         let (size, [.., [nearest, farthest]]) = (self.lens.size(), sides);

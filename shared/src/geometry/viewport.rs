@@ -13,7 +13,6 @@ use crate::{
 
 /// First row whose centre is not above `y`, or column whose centre is not left of it (1/16 pixel).
 #[inline]
-#[must_use]
 pub fn first_centre(y: i32) -> i32 {
     y.wrapping_add(CENTRE - 1) >> SUBPIXEL
 }
@@ -34,7 +33,6 @@ pub struct Bounds {
 impl Bounds {
     /// The pixels whose centres the bounding box of a triangle contains.
     #[inline]
-    #[must_use]
     pub fn new(extent: &Extent) -> Self {
         Self {
             left: first_centre(extent.left),
@@ -46,7 +44,6 @@ impl Bounds {
 
     /// The pixels that the bounding box of a triangle touches.
     #[inline]
-    #[must_use]
     pub fn touched(extent: &Extent) -> Self {
         // A touched pixel's centre lies up to half a pixel beyond the box.
         Self {
@@ -59,14 +56,12 @@ impl Bounds {
 
     /// All pixels of a viewport of this size.
     #[inline]
-    #[must_use]
     pub fn whole(width: i32, height: i32) -> Self {
         Self { left: 0, top: 0, right: width, bottom: height }
     }
 
     /// The part of the bounds that lies within `to`.
     #[inline]
-    #[must_use]
     pub fn clipped(self, to: Self) -> Self {
         Self {
             left: self.left.max(to.left),
@@ -78,7 +73,6 @@ impl Bounds {
 
     /// The part of the bounds that lies within `to`, if it has a pixel.
     #[inline]
-    #[must_use]
     pub fn visible(self, to: Self) -> Option<Self> {
         let bounds = self.clipped(to);
         (!bounds.is_empty()).then_some(bounds)
@@ -86,14 +80,12 @@ impl Bounds {
 
     /// The bounds as `[left, top, right, bottom]`.
     #[inline]
-    #[must_use]
     pub fn sides(self) -> [i32; 4] {
         [self.left, self.top, self.right, self.bottom]
     }
 
     /// Whether the bounds have no pixel.
     #[inline]
-    #[must_use]
     pub fn is_empty(&self) -> bool {
         self.left >= self.right || self.top >= self.bottom
     }

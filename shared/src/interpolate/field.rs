@@ -33,14 +33,12 @@ pub struct Nodes<const N: usize, const CH: usize, const BITS: u32 = 32> {
 impl<const N: usize, const CH: usize, const BITS: u32> Nodes<N, CH, BITS> {
     /// The polynomial through `values[channel][k]` at node `k`, walked with `extra` more fraction bits than the values have.
     #[inline(always)]
-    #[must_use]
     pub fn new(values: [[i32; N]; CH], extra: u32) -> Self {
         Self { values, extra, bias: [0; CH] }
     }
 
     /// Adds `bias` to every channel.
     #[inline(always)]
-    #[must_use]
     pub fn biased(self, bias: [i32; CH]) -> Self {
         Self { bias, ..self }
     }

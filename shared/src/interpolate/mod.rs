@@ -32,7 +32,6 @@ pub trait Patch: Copy {
 
     /// The polynomial with `by` added to its values. Only polynomials of levels are raised, for dither; others need not implement it.
     #[inline(always)]
-    #[must_use]
     fn raised(self, _by: &<Self::Walker as Walker>::Value) -> Self {
         self
     }
@@ -60,7 +59,6 @@ pub trait Patch: Copy {
 
     /// The polynomial that has been saved in `words`.
     #[inline(always)]
-    #[must_use]
     fn load(_words: &[u32]) -> Option<Self> {
         None
     }
@@ -70,7 +68,6 @@ pub trait Patch: Copy {
 pub trait Checkerboard: Patch {
     /// Adds half of the range of 2^32 at every other pixel, in all channels: where one of column and row is even and the other odd. The polynomial
     /// stands on `row`. Values have one bit less then; higher bits wrap.
-    #[must_use]
     fn checkered(self, row: i32) -> Self;
 }
 

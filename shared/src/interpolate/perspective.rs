@@ -41,7 +41,6 @@ pub trait Surface: Copy {
 
     /// The quantity with `by` added to its values, see [`Patch::raised`].
     #[inline(always)]
-    #[must_use]
     fn raised(self, _by: &Self::Value) -> Self {
         self
     }
@@ -69,7 +68,6 @@ impl<S: Surface> PerspectivePatch<S> {
     ///
     /// Error of barycentric coordinates: at most 2^-28 k / r, with k the length over the height of the triangle, and r the least inverse
     /// depth over the largest.
-    #[must_use]
     pub fn new(gradients: &Gradients, inv_depth: [i32; 3], surface: S) -> Self {
         Self { rows: rows(gradients, inv_depth), surface }
     }
@@ -95,7 +93,6 @@ fn numerators(inv_depth: [i32; 3]) -> [[i32; 3]; 3] {
 
 impl<S> PerspectivePatch<S> {
     /// Replaces the field, on this triangle.
-    #[must_use]
     pub fn with<T>(&self, surface: T) -> PerspectivePatch<T> {
         PerspectivePatch { rows: self.rows, surface }
     }

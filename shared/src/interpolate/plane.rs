@@ -65,7 +65,6 @@ impl<const CH: usize> Plane<CH> {
     /// triangles of up to 64 pixels: 2^4 (1 + S) units more. Set-up costs at most 2^-22 k of the nodes' range, k the length over the
     /// height.
     #[inline(always)]
-    #[must_use]
     pub fn fit<const BITS: u32>(gradients: &Gradients, nodes: &[[i32; 3]; CH], extra: u32, bias: [i32; CH]) -> Self {
         let mut plane = Self::ZERO;
         if CH == 1 {

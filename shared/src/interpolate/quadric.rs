@@ -122,7 +122,6 @@ impl<const CH: usize> Quadric<CH> {
     /// 0.001 LSB at 16 pixels.
     /// Source: Szirmay-Kalos et al.; Vlasic 2002, 4.2; change of basis without his divisions.
     #[inline(always)]
-    #[must_use]
     pub fn fit<const BITS: u32>(gradients: &Gradients, nodes: &[[i32; 6]; CH], extra: u32, bias: [i32; CH]) -> Self {
         let mut quadric = Self::ZERO;
         if CH == 1 {

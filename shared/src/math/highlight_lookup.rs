@@ -30,7 +30,6 @@ pub(crate) struct QuotientLookup<'a> {
 
 impl<'a> QuotientLookup<'a> {
     /// Lookup in the table of `lut`. Domain: it is not one of [`crate::math::highlight_lut::Highlight::Root`], so that nodes fit 26 bits.
-    #[must_use]
     pub(crate) fn new(lut: &'a HighlightLut) -> Self {
         Self { table: &lut.table, top: ((lut.scale << 7 << STEP) + (1 << (STEP - 1))) as i32, factor: (lut.scale << 16) as i32 }
     }
@@ -44,7 +43,6 @@ impl<'a> QuotientLookup<'a> {
 
     /// The node of a numerator, Q2.30: the numerator in steps of the table, Q20.6, rounded down. Domain: within ±2.
     #[inline]
-    #[must_use]
     pub(crate) fn node(&self, cosine: i32) -> i32 {
         upper_by_half_word(cosine, self.factor) >> (23 - NODE - 16)
     }
@@ -55,7 +53,6 @@ impl<'a> QuotientLookup<'a> {
     /// the reciprocal length, Q2.30. Domain: every quotient that fits; small ones take the last entry. Error: at most
     /// [`crate::math::highlight_lut::NEAREST_ERROR`] for lengths of 1/2 to 1 (tests::entries_are_the_nearest). Source: our own.
     #[inline]
-    #[must_use]
     pub(crate) fn at(&self, quotient: i32) -> u32 {
         // One instruction shifts and clamps, and nothing is left to check.
         self.table[(self.top.wrapping_sub(quotient) >> STEP).clamp(0, SIZE as i32 - 1) as usize].into()
@@ -74,7 +71,6 @@ pub(crate) struct DefectLookup<'a> {
 
 impl<'a> DefectLookup<'a> {
     /// Lookup in the table of `lut`.
-    #[must_use]
     pub(crate) fn new(lut: &'a HighlightLut) -> Self {
         // Scales are 2^5 to 2^13.
         let up = lut.scale.max(1).leading_zeros().saturating_sub(17);
@@ -83,14 +79,12 @@ impl<'a> DefectLookup<'a> {
 
     /// The node of a cosine, Q2.30: 1 - cosine times a factor of 1/2 to 1, Q2.24, rounded down. Domain: above -1.
     #[inline]
-    #[must_use]
     pub(crate) fn node(&self, cosine: i32) -> i32 {
         upper_by_half_word((1 << 30) - cosine, self.factor) >> 5
     }
 
     /// Half a step of the table, Q2.30. Added to an interpolated defect, it makes the entry below the nearest one.
     #[inline]
-    #[must_use]
     pub(crate) fn half(&self) -> i32 {
         1 << (self.shift - 1)
     }
@@ -100,7 +94,6 @@ impl<'a> DefectLookup<'a> {
     /// `defect` is in the format of a node with 6 more fraction bits, Q2.30, with [`Self::half`] added. Domain: every `i32`; large ones
     /// take the last entry. Error: at most [`crate::math::highlight_lut::NEAREST_ERROR`] (tests::entries_are_the_nearest). Source: our own.
     #[inline]
-    #[must_use]
     pub(crate) fn at(&self, defect: i32) -> u32 {
         self.table[(defect >> (self.shift & 31)).clamp(0, SIZE as i32 - 1) as usize].into()
     }

@@ -72,7 +72,6 @@ impl Highlight {
     }
 
     /// Smallest exponent of a material. At this exponent the base is raised to 1.
-    #[must_use]
     pub const fn least_exponent(self) -> u16 {
         1 << self.roots()
     }
@@ -81,7 +80,6 @@ impl Highlight {
 /// The base of [`Highlight::Root`] for `x`, Q2.30, rounded down.
 ///
 /// Domain: `x` from -7/4 to just below √2, so that the result fits. Error: less than 1 unit of the last place (tests::squares).
-#[must_use]
 pub fn square(x: i32) -> i32 {
     if x >= 1 << (COSINE - 1) { (product(x, x) >> COSINE) as i32 } else { x - (1 << (COSINE - 2)) }
 }
@@ -133,7 +131,6 @@ impl HighlightCurve {
     ///
     /// Domain: `n` is 1 to 1024, at least 2 for [`Highlight::HalfSquared`] and 4 for [`Highlight::Reflected`]; `full` and `floor` are unsigned Q0.16,
     /// their sum at most 1.
-    #[must_use]
     pub fn new(n: u16, base: Highlight, full: u32, floor: u16) -> Self {
         let n4 = u32::from(n) << 2;
         let scale = WHOLE.max(NonZeroU32::new(if base == Highlight::Root { n4 << 1 } else { n4 >> base.roots() }).unwrap_or(WHOLE));
@@ -168,7 +165,6 @@ impl HighlightCurve {
     ///
     /// Domain: every `cosine`, Q2.30; above 1 counts as 1. Error: at most [`ERROR`] of full intensity (tests::error).
     #[inline(never)]
-    #[must_use]
     pub fn at(&self, cosine: i32) -> u32 {
         let position = position(self.scale, cosine);
         let i = (position >> 12) as usize;
@@ -183,13 +179,11 @@ impl HighlightCurve {
     }
 
     /// The smallest value, where the power is 0; unsigned Q0.16.
-    #[must_use]
     pub fn floor(&self) -> u32 {
         self.floor.into()
     }
 
     /// The cosine, Q2.30, at which a table ends. The powers of smaller cosines count as 0.
-    #[must_use]
     pub fn highlight_threshold(&self) -> i32 {
         (1i32 << COSINE) - long(32u64 << COSINE, self.scale().get().into()) as i32
     }
@@ -235,7 +229,6 @@ impl HighlightLut {
     /// `full cosine^n`, unsigned Q0.16, without the floor, by linear interpolation.
     ///
     /// Domain: every `cosine`, Q2.30; above 1 counts as 1. Error: at most [`ERROR`] of full intensity (tests::error).
-    #[must_use]
     pub fn at(&self, cosine: i32) -> u32 {
         let position = position(self.scale, cosine);
         let i = (position >> 12) as usize;
@@ -246,7 +239,6 @@ impl HighlightLut {
     }
 
     /// Lookup of the nearest entry by a cosine. The entry nearest to a cosine, Q5.27, is number `((top - cosine) * factor) >> 36`.
-    #[must_use]
     pub fn by_cosine(&self) -> CosineLookup<'_> {
         let scale = NonZeroU32::new(self.scale).unwrap_or(WHOLE);
         CosineLookup { table: &self.table, top: (1 << PIXEL_COSINE) + ((1 << 19) / scale) as i32, factor: (scale.get() << 16) as i32 }
@@ -266,7 +258,6 @@ impl CosineLookup<'_> {
     ///
     /// Domain: `cosine` in Q5.27 such that 1 - cosine fits it. Error: at most [`NEAREST_ERROR`] (tests::error).
     #[inline]
-    #[must_use]
     pub fn at(&self, cosine: i32) -> u32 {
         let fine = upper_by_half_word(self.top.wrapping_sub(cosine), self.factor);
         // One instruction shifts and clamps, and nothing is left to check.

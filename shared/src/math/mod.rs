@@ -18,7 +18,6 @@ pub use crate::arch::product::upper;
 ///
 /// Domain: `value + 2^(bits - 1)` fits 64 bits. Above 62 bits, and below -63, the result is 0. Exact (tests::scaling).
 #[inline]
-#[must_use]
 pub fn scale(value: i64, bits: i32) -> i64 {
     if bits > 62 {
         0

@@ -14,7 +14,6 @@ pub const ERROR: u32 = 3;
 /// Error: at most [`ERROR`] units below the exact quotient, at most 1 above it (tests::error; measured on every argument).
 /// Source: the method of Newton; one 32-bit division of the upper half gives the first 15 bits, one step the rest.
 #[inline]
-#[must_use]
 pub fn recip(d: u32) -> u32 {
     let d = d | 1 << 31;
     // 2^47 / d from the upper 16 bits, rounded up: in (2^15, 2^16].
@@ -32,7 +31,6 @@ pub const QUOTIENT_ERROR: f64 = 1.0 / (1u32 << 28) as f64;
 ///
 /// Domain: all numbers; 0 where `d` is 0. Error: at most [`QUOTIENT_ERROR`] relative, and 1 unit for rounding (tests::quotients). Source: a
 /// product of the upper word of `n` with the reciprocal of that of `d`.
-#[must_use]
 pub fn quotient(n: u64, d: u64) -> u64 {
     let (bits, zeros) = (n.leading_zeros(), d.leading_zeros());
     if n == 0 || d == 0 {

@@ -23,7 +23,6 @@ pub const ERROR: f64 = 2.5 / (1u64 << 30) as f64;
 /// Domain: `m` in [1, 4), unsigned Q2.30; less counts as 1. Error: at most [`ERROR`] relative (tests::error; measured on every
 /// argument). Source: a table of 192 entries, and two steps of the method of Newton, y (3 - m y²) / 2.
 #[inline]
-#[must_use]
 pub fn rsqrt(m: u32) -> u32 {
     let m = m.max(1 << 30);
     let seed = SEED.get((m >> 24) as usize - 64).copied().unwrap_or(0);
@@ -45,7 +44,6 @@ pub const ROOT_ERROR: f64 = 4.25 / (1u64 << 30) as f64;
 /// Source: the reciprocal root y of the table, one step of the method of Newton y + y (1 - m y²) / 2 in few bits, then one for the root
 /// itself: s + s (1 - s/sqrt(w)) / 2 (Goldschmidt 1964).
 #[inline]
-#[must_use]
 pub fn sqrt(w: i32) -> i32 {
     let m = (w as u32) << 2;
     let seed = SEED.get((m >> 24).wrapping_sub(64) as usize).copied().unwrap_or(0);
@@ -100,13 +98,11 @@ pub struct HalfRsqrt([u32; 2048]);
 
 impl HalfRsqrt {
     /// The table. There is only one.
-    #[must_use]
     pub fn get() -> &'static Self {
         &TABLE
     }
 
     /// All knots, for kernels in assembler.
-    #[must_use]
     pub fn knots(&self) -> &[u32; 2048] {
         &self.0
     }
@@ -116,7 +112,6 @@ impl HalfRsqrt {
     /// Domain: x in [1/4, 1]. Error: at most [`HALF_ERROR`] relative; from [`LEAST`] to 1/4, and above 1, at most [`OUTSIDE_ERROR`]
     /// (tests::half_error, on every argument). Source: linear interpolation with balanced error, our own.
     #[inline]
-    #[must_use]
     pub fn rsqrt(&self, above: u32) -> u32 {
         // Interval in the upper bits, place in it in the ten below them.
         let knot = self.0[(above >> 21) as usize];
@@ -136,7 +131,6 @@ pub const WIDE_ERROR: f64 = 2.75 / (1u64 << 30) as f64;
 ///
 /// Domain: x from 1; 0 counts as 1. Error: at most [`WIDE_ERROR`] relative (tests::wide). Source: [`rsqrt`] of the upper 32 bits.
 #[inline]
-#[must_use]
 pub fn rsqrt_wide(x: u64) -> (u32, u32) {
     let shift = x.leading_zeros() & !1;
     let m = ((x << (shift & 63)) >> 32) as u32;
@@ -153,7 +147,6 @@ impl HalfRsqrt {
     /// Domain: `m` in [1, 4), unsigned Q2.30; less counts as 1. Error: at most [`FINE_ERROR`] relative (tests::fine_error).
     /// Source: [`Self::rsqrt`], and a step of the method of Newton, y + y (1 - m y²) / 2.
     #[inline]
-    #[must_use]
     pub fn fine(&self, m: u32) -> u32 {
         let m = m.max(1 << 30);
         // A quarter of m as Q0.32 has the bits of m.

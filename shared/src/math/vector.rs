@@ -7,7 +7,6 @@ use crate::{
 
 /// Dot product of two vectors, in the product of their formats. Domain: the sum fits 64 bits, as for components below 2^30. Exact.
 #[inline]
-#[must_use]
 pub fn dot(a: [i32; 3], b: [i32; 3]) -> i64 {
     if HALVES { dot_by_calls(a, b) } else { product(a[0], b[0]) + product(a[1], b[1]) + product(a[2], b[2]) }
 }
@@ -20,21 +19,18 @@ fn dot_by_calls(a: [i32; 3], b: [i32; 3]) -> i64 {
 
 /// Converts a vertex normal or position to `i32`, in the same format.
 #[inline]
-#[must_use]
 pub fn wide(v: [i16; 3]) -> [i32; 3] {
     map(v, i32::from)
 }
 
 /// Dot product of two vectors, in the product of their formats. Domain: the sum fits 32 bits; else it wraps modulo 2^32. Exact.
 #[inline]
-#[must_use]
 pub fn narrow_dot([a0, a1, a2]: [i32; 3], [b0, b1, b2]: [i32; 3]) -> i32 {
     a0.wrapping_mul(b0).wrapping_add(a1.wrapping_mul(b1)).wrapping_add(a2.wrapping_mul(b2))
 }
 
 /// Applies `f` to each component. It is written out, because `map` of an array is a loop through memory at opt-level "s".
 #[inline(always)]
-#[must_use]
 pub fn map<A, R>([a0, a1, a2]: [A; 3], f: impl Fn(A) -> R) -> [R; 3] {
     [f(a0), f(a1), f(a2)]
 }
@@ -43,33 +39,28 @@ pub fn map<A, R>([a0, a1, a2]: [A; 3], f: impl Fn(A) -> R) -> [R; 3] {
 ///
 /// The components are written out, so that no index is checked.
 #[inline(always)]
-#[must_use]
 pub fn zip<A, B, R>([a0, a1, a2]: [A; 3], [b0, b1, b2]: [B; 3], f: impl Fn(A, B) -> R) -> [R; 3] {
     [f(a0, b0), f(a1, b1), f(a2, b2)]
 }
 
 /// The transpose of a matrix.
-#[must_use]
 pub fn transposed<A>([[a, b, c], [d, e, f], [g, h, i]]: [[A; 3]; 3]) -> [[A; 3]; 3] {
     [[a, d, g], [b, e, h], [c, f, i]]
 }
 
 /// Computes `a - b`, in their format. It wraps modulo 2^32 if it overflows.
 #[inline]
-#[must_use]
 pub fn sub(a: [i32; 3], b: [i32; 3]) -> [i32; 3] {
     zip(a, b, i32::wrapping_sub)
 }
 
 /// Computes `a + b`, in their format. It wraps modulo 2^32 if it overflows.
 #[inline]
-#[must_use]
 pub fn add(a: [i32; 3], b: [i32; 3]) -> [i32; 3] {
     zip(a, b, i32::wrapping_add)
 }
 
 /// Cross product of two vectors, in the product of their formats. Domain: components above -2^31. Exact.
-#[must_use]
 pub fn cross([a0, a1, a2]: [i32; 3], [b0, b1, b2]: [i32; 3]) -> [i64; 3] {
     let minor = |a: i32, b: i32, c: i32, d: i32| product(a, d) - product(b, c);
     [minor(a1, a2, b1, b2), minor(a2, a0, b2, b0), minor(a0, a1, b0, b1)]
@@ -84,7 +75,6 @@ pub const COMPONENT_ERROR: f64 = 5.0 / (1u32 << 30) as f64;
 ///
 /// Domain: every vector of `i32`, in any format: it is first shifted to 30 bits. Error: at most [`LENGTH_ERROR`] of the length, and
 /// [`COMPONENT_ERROR`] of a component (tests::unit). Source: a product with the reciprocal root of the squared length.
-#[must_use]
 pub fn normalise(v: [i32; 3]) -> [i32; 3] {
     let largest = v.iter().fold(0, |m, c| m | c.unsigned_abs());
     if largest == 0 {
@@ -101,7 +91,6 @@ pub fn normalise(v: [i32; 3]) -> [i32; 3] {
 ///
 /// Domain: components below 2^30 in size, the longest vector not shorter than 2. Error: that of [`normalise`], and less than 2 units of the
 /// last place.
-#[must_use]
 pub fn over_longest<const BITS: u32>([u, v, w]: [[i32; 3]; 3]) -> [[i32; 3]; 3] {
     let (mantissa, exponent) = rsqrt_wide(dot(u, u).max(dot(v, v)).max(dot(w, w)) as u64);
     let left = (32 + BITS).wrapping_sub(exponent) & 31;

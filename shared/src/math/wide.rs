@@ -69,7 +69,6 @@ impl Wide {
     /// The quotient by a word, rounded down, in long division by words: a quarter of the instructions of a division of `i128`. Exact
     /// (tests::divisions).
     #[inline(never)]
-    #[must_use]
     pub fn over(self, divisor: NonZeroU32) -> Self {
         // Of a negative number: what is left of its size is below it, so that its complement is divided.
         let sign = (self.0 >> 127) as u128;
@@ -85,7 +84,6 @@ impl Wide {
 
     /// Multiplies by 2^`bits`, modulo 2^128. Domain: `bits` is less than 128. Exact.
     #[inline(never)]
-    #[must_use]
     pub fn shifted(self, bits: u32) -> Self {
         Self(self.0.wrapping_shl(bits))
     }

@@ -93,7 +93,6 @@ impl Gamma {
     /// What to send for `level`, which is a channel in unsigned Q8.8 that is scaled to `depth` bits, and so is the result: both at most
     /// `2^16 - 2^(16 - depth)`, full intensity.
     #[inline(never)]
-    #[must_use]
     pub(crate) fn encoded(&self, level: u32, depth: u32) -> u32 {
         let full = ((1 << depth) - 1) << (16 - depth);
         // Both products are below 2^32.

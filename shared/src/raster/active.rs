@@ -76,7 +76,6 @@ pub struct ActiveTriangles<'a> {
 
 impl<'a> ActiveTriangles<'a> {
     /// The queue in this state.
-    #[must_use]
     pub fn new(active_triangles: &'a mut [ActiveTriangle], queue: QueueState) -> Self {
         Self { active_triangles, queue, overflow: 0, choice: 0 }
     }

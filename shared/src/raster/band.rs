@@ -53,7 +53,6 @@ impl<C> Band<'_, C> {
     }
 
     /// Index of the first pixel of `row`.
-    #[must_use]
     pub fn start(&self, row: i32) -> usize {
         (row.wrapping_sub(self.top) as usize).wrapping_mul(self.width)
     }

@@ -156,14 +156,12 @@ pub struct Colourist<'c, C: Pixel> {
 
 impl<'c, C: Pixel> Colourist<'c, C> {
     /// The colours of a material, with these settings of the renderer.
-    #[must_use]
     pub fn new(tables: MaterialTables<'c, C>, dither: bool, gamma: Option<&'c Gamma>) -> Self {
         let corrects = gamma.is_some() && tables.reflectance.three_channels() && !C::IS_LIGHT;
         Self { tables, dither, gamma, corrects }
     }
 
     /// Whether the loops of methods make these colours.
-    #[must_use]
     pub fn suits_loops(&self) -> bool {
         !self.corrects
     }

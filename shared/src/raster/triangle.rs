@@ -94,21 +94,18 @@ impl<'f> ScreenTriangle<'f> {
     /// A triangle whose corners have been [`turned`]. Pixels outside of these `columns` and `rows` are not drawn. If edges are stepped from end to
     /// end, these have to be the band's.
     #[inline(never)]
-    #[must_use]
     pub fn new(corners: [&'f ScreenVertex; 3], columns: [i32; 2], rows: [i32; 2]) -> Self {
         Self { corners, rows: RowRange::of(EdgeWalker::new(places(corners), rows, columns), 0) }
     }
 
     /// A word-sized triangle that has been [`turned`]: its edges can be stepped from end to end.
     #[inline(always)]
-    #[must_use]
     pub(crate) fn word_sized<C>(corners: [&'f ScreenVertex; 3], key: u32, band: &Band<'_, C>) -> Self {
         Self { corners, rows: RowRange::of(EdgeWalker::end_to_end(places(corners), band.range()), key) }
     }
 
     /// A triangle that the band above has saved.
     #[inline(always)]
-    #[must_use]
     pub(crate) fn resumed<C>(active_triangle: &ActiveTriangle, corners: [&'f ScreenVertex; 3], band: &Band<'_, C>) -> Self {
         let rows = RowRange {
             sides: active_triangle.edges.walker(band.range()),
@@ -121,20 +118,17 @@ impl<'f> ScreenTriangle<'f> {
 
     /// `[x, y]` of the corners in 1/16 pixel, the top one first, clockwise on a screen whose y runs down.
     #[inline(always)]
-    #[must_use]
     pub fn corners(&self) -> [[i32; 2]; 3] {
         places(self.corners)
     }
 
     /// Whether no row lies in the band.
     #[inline]
-    #[must_use]
     pub fn is_empty(&self) -> bool {
         self.rows.sides.row >= self.rows.sides.end
     }
 
     /// Whether the triangle contains no centre of a pixel in the rows of the band.
-    #[must_use]
     pub(crate) fn covers_nothing(&self) -> bool {
         self.each_row(|_, pair| pair.columns() == 0).is_some()
     }
@@ -448,7 +442,6 @@ impl<'f> ScreenTriangle<'f> {
 
 /// Index of the top corner, and the corners from there on.
 #[inline(always)]
-#[must_use]
 pub fn turned(corners: [&ScreenVertex; 3]) -> (usize, [&ScreenVertex; 3]) {
     let [a, b, c] = corners;
     let by = if b.y < a.y || c.y < a.y { if c.y < b.y { 2 } else { 1 } } else { 0 };
@@ -462,7 +455,6 @@ fn places([a, b, c]: [&ScreenVertex; 3]) -> [[i32; 2]; 3] {
 
 /// Rotates three values by `by` places.
 #[inline(always)]
-#[must_use]
 pub fn turn<A: Copy>([a, b, c]: [A; 3], by: usize) -> [A; 3] {
     match by {
         0 => [a, b, c],

@@ -25,7 +25,6 @@ const fn inverses([a, b, c, d, e]: [i64; 5]) -> [i64; 5] {
 ///
 /// Domain: every angle. Error: at most [`SIN_COS_ERROR`] (tests::sines_and_cosines). Source: the series of Taylor about the nearest quarter
 /// of a turn, up to the ninth power of the sine and the tenth of the cosine, of which the next terms are below 2e-9 there.
-#[must_use]
 pub(crate) fn sin_cos(angle: Angle) -> [i32; 2] {
     let quarter = angle.to_bits().wrapping_add(1 << 29) >> 30;
     // At most an eighth of a turn, in radians, Q2.30: bits of Q0.32 turns are four times as fine.

@@ -8,7 +8,6 @@ use crate::{
 };
 
 /// Rows of the rotation from the world to the eye in frame `number`, Q2.30.
-#[must_use]
 pub(crate) fn rotation(camera: &Camera, number: u32) -> [[i32; 3]; 3] {
     match number.checked_rem(camera.period.into()) {
         Some(frame) if frame != 0 => turned(camera.rotation, camera.axis, frame, camera.period.into()),

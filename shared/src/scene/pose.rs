@@ -195,7 +195,6 @@ impl Pose {
 
     /// Interpolates from this pose to another by `share / 2^16`: positions and scales linearly, rotations the shorter way round, in
     /// constant time. Source: Shoemake (1985), with the chord in place of the arc.
-    #[must_use]
     pub(crate) fn towards(&self, other: &Self, share: i64) -> Self {
         let mean = |a: i32, b: i32| (i64::from(a) + (((i64::from(b) - i64::from(a)) * share) >> 16)) as i32;
         let (from, to) = (self.rotation, other.rotation);
@@ -237,7 +236,6 @@ impl Pose {
 
     /// Rows of the rotation from object space to the world, Q2.30: orthonormal to a few units of the last place, by which entries may be above
     /// one.
-    #[must_use]
     pub(crate) fn matrix(&self) -> [[i32; 3]; 3] {
         let [w, x, y, z] = self.rotation;
         // Twice the products, rounded: at most 2^31 + 8 in size, by [`QUATERNION_ERROR`], and 2^30 + 8 where they are taken from one.

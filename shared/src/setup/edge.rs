@@ -70,14 +70,12 @@ impl EdgeX {
 impl Edge {
     /// The edge from `upper` to `lower`, each `[x, y]` in 1/16 pixel.
     #[inline]
-    #[must_use]
     pub(crate) fn new(upper: [i32; 2], lower: [i32; 2]) -> Self {
         Self { x: upper[0], y: upper[1], dx: lower[0].wrapping_sub(upper[0]), dy: lower[1].wrapping_sub(upper[1]) }
     }
 
     /// First column whose centre is not left of the edge at the centre of `row`, for any edge and any row.
     #[inline]
-    #[must_use]
     pub(crate) fn column(&self, row: i32) -> i32 {
         let dy = i64::from(self.dy.max(1));
         let t = i64::from((row << SUBPIXEL) + CENTRE) - i64::from(self.y);
@@ -95,7 +93,6 @@ impl Edge {
     /// A true position is a multiple of 1/(256 h) columns, h the height in rows. The start is too small by less than
     /// 2 · 2^-21 and each step by less than 2^-21, so in row n the integer part is right while (n + 3) 256 h < 2^21.
     #[inline]
-    #[must_use]
     pub(crate) fn walk(&self) -> EdgeX {
         let step = slope(self.dx, self.dy);
         // From the start to the first centre, less than a row: step down / 16, rounded down.
@@ -108,14 +105,12 @@ impl Edge {
     ///
     /// The bound is the one in [`Self::walk`], except that the start is too small by less than 2^-21.
     #[inline]
-    #[must_use]
     pub(crate) fn exact_rows(&self) -> i32 {
         if self.dy < MIN_DIVIDED_HEIGHT { (1 << (COLUMN + SUBPIXEL - 8)) / self.dy.max(1) - 2 } else { 0 }
     }
 
     /// The column at the centre of `row`, ready to be stepped. Domain: edges with `exact_rows() > 0` whose columns lie in [0, [`COLUMNS`]), and rows
     /// of the edge.
-    #[must_use]
     pub(crate) fn walk_from(&self, row: i32) -> EdgeX {
         let dy = self.dy.max(1) as u32;
         let whole = self.dx.div_euclid(self.dy.max(1));

@@ -93,7 +93,6 @@ pub type Visible = [i32; 4];
 impl Gradients {
     /// The gradients of the triangle with `corners` in 1/16 pixel, clockwise on a screen whose y runs down; `None` if it has no area or
     /// runs the other way.
-    #[must_use]
     pub fn new(corners: [[i32; 2]; 3], visible: Visible) -> Option<Self> {
         Self::if_word_sized(corners).or_else(|| Self::any(corners, visible))
     }
@@ -101,7 +100,6 @@ impl Gradients {
     /// The gradients of a word-sized triangle; `None` for any other. A triangle is word-sized if it is at most 64 pixels wide and high, and
     /// far from [`MAX_THINNESS`].
     #[inline(always)]
-    #[must_use]
     pub fn if_word_sized(corners: [[i32; 2]; 3]) -> Option<Self> {
         let (_, edges) = edges(corners);
         Some(Self::from_area(corners, WordSized::new(edges)?, Steepness::NONE))
@@ -118,7 +116,6 @@ impl Gradients {
 
     /// The gradients of a triangle that is known to be word-sized.
     #[inline(always)]
-    #[must_use]
     pub(crate) fn word_sized(corners: [[i32; 2]; 3], steepness: Steepness) -> Self {
         let (_, edges) = edges(corners);
         Self::from_area(corners, WordSized::of(edges), steepness)
@@ -135,7 +132,6 @@ impl Gradients {
     /// The gradients of any triangle; `None` if it has no area or runs the other way.
     #[cold]
     #[inline(never)]
-    #[must_use]
     pub fn any(corners: [[i32; 2]; 3], visible: Visible) -> Option<Self> {
         let ([x0, y0], edges) = edges(corners);
         let [[x1, y1], [x2, y2]] = edges;
@@ -171,7 +167,6 @@ impl Gradients {
     }
 
     /// The gradients of any triangle with this anchor; `None` if it has no area or runs the other way.
-    #[must_use]
     pub fn anchored(corners: [[i32; 2]; 3], anchor: [i32; 2]) -> Option<Self> {
         let whole = Self::any(corners, [0; 4])?;
         let (from, shift) = (whole.anchor, whole.shift());
@@ -182,13 +177,11 @@ impl Gradients {
 
     /// These gradients, for fields of this steepness: they are fitted as exactly as the highlights of a material need them.
     #[inline]
-    #[must_use]
     pub fn steep(self, steepness: Steepness) -> Self {
         Self { steepness, ..self }
     }
 
     /// How steeply light follows what is fitted.
-    #[must_use]
     pub fn steepness(&self) -> Steepness {
         self.steepness
     }
@@ -198,7 +191,6 @@ impl Gradients {
     ///
     /// A part that is not `near` its corner everywhere has the triangle's anchor.
     #[inline]
-    #[must_use]
     pub fn part(&self, corner: [i32; 2], level: u32, turned: bool, near: bool) -> Self {
         let gradient = |g: [i32; 2]| if turned { g.map(i32::wrapping_neg) } else { g };
         let pixel = corner.map(|c| c >> FINE);
@@ -218,7 +210,6 @@ impl Gradients {
     }
 
     /// Converts the gradients to the form from which many parts are taken fast.
-    #[must_use]
     pub fn parted(&self) -> Self {
         match self.precision {
             Precision::WordSized(area) => {
@@ -232,7 +223,6 @@ impl Gradients {
     /// Whether the triangle is not word-sized and longer than about `ratio` times its height. The measure is the square of its longest side by
     /// columns or rows from corner 0, over twice its area.
     #[inline]
-    #[must_use]
     pub fn is_thinner_than(&self, ratio: i64) -> bool {
         matches!(self.precision, Precision::Any(_)) && is_longer(self.edges, ratio)
     }
@@ -245,21 +235,18 @@ impl Gradients {
 
     /// Column of the anchor.
     #[inline]
-    #[must_use]
     pub fn column(&self) -> i32 {
         self.anchor[0]
     }
 
     /// Row of the anchor.
     #[inline]
-    #[must_use]
     pub fn row(&self) -> i32 {
         self.anchor[1]
     }
 
     /// Gradients of s and t.
     #[inline(always)]
-    #[must_use]
     pub fn slopes(&self) -> Slopes {
         match self.precision {
             Precision::WordSized(area) => Self::mantissas(self.edges, area),
@@ -269,7 +256,6 @@ impl Gradients {
 
     /// Vector from the pixel at corner 0 to the anchor, in pixels.
     #[inline]
-    #[must_use]
     pub fn shift(&self) -> [i32; 2] {
         match self.precision {
             Precision::WordSized(_) => [0; 2],
@@ -279,7 +265,6 @@ impl Gradients {
 
     /// How often the triangle was split.
     #[inline]
-    #[must_use]
     pub fn level(&self) -> u32 {
         match self.precision {
             Precision::WordSized(_) => 0,
@@ -303,7 +288,6 @@ impl Gradients {
 
     /// `[c, dx, dy]` of the linear field through the corners' values in a range of 2^`BITS`, at the anchor.
     #[inline(always)]
-    #[must_use]
     pub fn linear<const BITS: u32>(&self, nodes: [i32; 3], extra: u32) -> [i32; 3] {
         match self.precision {
             Precision::WordSized(area) if BITS <= word_sized::LINEAR && extra <= word_sized::EXTRA => {
@@ -353,7 +337,6 @@ impl Gradients {
     }
 
     /// `[c, dx, dy]` of the linear field through the corners' values, at the anchor, with [`GUARD`] more fraction bits.
-    #[must_use]
     pub fn fine(&self, nodes: [i32; 3]) -> [i64; 3] {
         let [c, dx, dy] = self.plane(nodes, 0);
         let [x, y] = self.shift().map(i64::from);
@@ -378,7 +361,6 @@ impl Gradients {
 
     /// `[c, dx, dy, dxx, dxy, dyy]` of the quadratic through six nodes in a range of 2^`BITS`, at the anchor.
     #[inline(always)]
-    #[must_use]
     pub fn quadratic<const BITS: u32>(&self, nodes: [i32; 6], extra: u32) -> [i32; 6] {
         match self.precision {
             Precision::WordSized(area) if BITS <= word_sized::QUADRATIC && extra <= word_sized::EXTRA => {
@@ -504,7 +486,6 @@ impl Gradients {
 
     /// Whether quadratics can be walked in words all over the triangle.
     #[inline(always)]
-    #[must_use]
     pub(crate) fn walks_in_words(&self) -> bool {
         match self.precision {
             Precision::WordSized(area) if self.steepness.walks_word_sized(area.bits) => true,

@@ -60,7 +60,6 @@ impl Steepness {
     pub const NONE: Self = Self { exponent: 0, walked: Self::ALL, bend: Self::ALL };
 
     /// The steepness of quadratics that are raised to `exponent`.
-    #[must_use]
     pub const fn new(exponent: u32) -> Self {
         let exponent = if exponent > MOST { MOST } else { exponent };
         if exponent == 0 {
@@ -74,13 +73,11 @@ impl Steepness {
     }
 
     /// The steepness of a quadratic on a large triangle, where light depends on it `2^bits` times less steeply.
-    #[must_use]
     pub(crate) fn halved(self, bits: u32) -> Self {
         Self { exponent: self.exponent >> bits, ..self }
     }
 
     /// The steepness of planes instead of quadratics. Planes are walked exactly enough in words over any triangle.
-    #[must_use]
     pub(crate) const fn of_planes(self) -> Self {
         Self { walked: Self::ALL, ..self }
     }
@@ -91,7 +88,6 @@ impl Steepness {
     }
 
     /// The larger steepness, by which every fast way is exact enough for both.
-    #[must_use]
     pub(crate) fn max(self, other: Self) -> Self {
         Self { exponent: self.exponent.max(other.exponent), walked: self.walked.min(other.walked), bend: self.bend.min(other.bend) }
     }
