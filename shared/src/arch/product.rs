@@ -57,7 +57,7 @@ pub(crate) fn upper_dot([a, b]: [i32; 2], [x, y]: [i32; 2]) -> i32 {
 /// `product / 2^(32 - left)`, rounded to nearest, halves up, modulo 2^32.
 ///
 /// Domain: `left` is less than 32. Exact (tests::shifts_make_the_same).
-#[inline(always)]
+#[inline]
 pub(crate) fn rounded(product: i64, left: u32) -> i32 {
     let product = product.wrapping_add(((1u32 << 31) >> left).into());
     let (upper, lower) = ((product >> 32) as u32, product as u32);
@@ -67,7 +67,7 @@ pub(crate) fn rounded(product: i64, left: u32) -> i32 {
 /// `product / 2^(32 - left)`, rounded down, modulo 2^32.
 ///
 /// Domain: `left` is 1 to 31. Exact (tests::shifts_make_the_same).
-#[inline(always)]
+#[inline]
 pub(crate) fn shifted(product: i64, left: u32) -> i32 {
     let (upper, lower) = ((product >> 32) as u32, product as u32);
     (upper.wrapping_shl(left) | lower.wrapping_shr(32 - left)) as i32
@@ -80,7 +80,7 @@ fn split(a: i32) -> (i32, i32) {
 }
 
 /// Upper half of a product (Knuth; Warren, Hacker's Delight 8-2): no sum of half words overflows.
-#[inline(always)]
+#[inline]
 fn upper_by_halves(a: i32, b: i32) -> i32 {
     let ((al, ah), (bl, bh)) = (split(a), split(b));
     let (low, high) = split(ah.wrapping_mul(bl).wrapping_add((al.wrapping_mul(bl) as u32 >> 16) as i32));
@@ -105,7 +105,7 @@ fn unsigned_by_halves(a: u32, b: u32) -> u64 {
 }
 
 /// `a b / 2^16`, rounded down; `b` is at most 16 bits, without a sign.
-#[inline(always)]
+#[inline]
 fn by_half_word(a: i32, b: i32) -> i32 {
     let (low, high) = split(a);
     high.wrapping_mul(b).wrapping_add((low.wrapping_mul(b) as u32 >> 16) as i32)
@@ -118,7 +118,7 @@ fn unsigned_by_half_word(a: u32, b: u32) -> u32 {
 }
 
 /// `(a x + b y) / 2^16`, rounded down; `x` and `y` are half words.
-#[inline(always)]
+#[inline]
 fn dot_by_halves([a, b]: [i32; 2], [x, y]: [i32; 2]) -> i32 {
     let ((al, ah), (bl, bh)) = (split(a), split(b));
     // Products of the lower halves are split again: the sum of two of them would not fit.

@@ -80,13 +80,13 @@ static SEEDS: [u16; 256] = {
 ///
 /// Domain: `d` is 2^15 to 2^16 - 1. Exact (tests::every_inverse_is_exact, on every argument). Source: one step of the method of Newton
 /// from a table, corrected by the remainder.
-#[inline(always)]
+#[inline]
 pub(crate) fn inverse(d: u32) -> u32 {
     // Setting the bit, which is set, shows the compiler that the divisor is not 0.
     if HALVES { inverse_by_table(d) } else { u32::MAX / (d | 1 << 15) }
 }
 
-#[inline(always)]
+#[inline]
 fn inverse_by_table(d: u32) -> u32 {
     // One step: 2 s (1 + e) with the residual e = 1 - s d / 2^31, less than 2^-8.
     let seed = u32::from(SEEDS[(d >> 7 & 0xFF) as usize]);
@@ -108,12 +108,12 @@ fn inverse_by_table(d: u32) -> u32 {
 /// 16th.
 ///
 /// Domain: `n` is at most `d`, and `d` is 1 to 2^16 - 1. Exact (tests::fractions_are_exact). Source: the reciprocal, corrected by the remainder.
-#[inline(always)]
+#[inline]
 pub(crate) fn fraction(n: u32, d: u32, (reciprocal, zeros): (u32, u32)) -> (u32, u32) {
     if HALVES { fraction_by_inverse(n, d, (reciprocal, zeros)) } else { ((n << 16) / d.max(1), (n << 16) % d.max(1)) }
 }
 
-#[inline(always)]
+#[inline]
 fn fraction_by_inverse(n: u32, d: u32, (reciprocal, zeros): (u32, u32)) -> (u32, u32) {
     // Too small by less than 2.
     let mut quotient = n.wrapping_mul(reciprocal) >> (16 - zeros);
@@ -153,7 +153,7 @@ fn long_by_words(n: u64, d: u64) -> u64 {
 }
 
 /// [`long`] of a number with a sign, rounded down.
-#[inline(always)]
+#[inline]
 pub(crate) fn signed_long(n: i64, d: u64) -> i64 {
     // Of a negative number: what is left of its size is below it, so that its complement is divided.
     let sign = n >> 63;

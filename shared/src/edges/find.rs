@@ -37,7 +37,7 @@ pub(crate) struct Outlined<'f> {
 pub(crate) type Set = [u32];
 
 /// A word whose sign tells whether a neighbour is in `set`; `None` if it is not.
-#[inline(always)]
+#[inline]
 fn sign(set: &Set, neighbour: u16) -> Option<u32> {
     set.get(usize::from((neighbour & OPEN) >> 5)).map(|word| word.rotate_right(neighbour.into()))
 }
@@ -178,7 +178,7 @@ impl Outlined<'_> {
     }
 
     /// [`Self::range`] of a triangle whose corners have these inverse depths.
-    #[inline(always)]
+    #[inline]
     fn range_of(&self, triangle: &Triangle, [a, b, c]: [i32; 3]) -> i32 {
         let nearest = a.max(b).max(c);
         let range = nearest.wrapping_sub(a.min(b).min(c));

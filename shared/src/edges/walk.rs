@@ -112,7 +112,7 @@ impl Notes<'_> {
     }
 
     /// Marks a pixel, unless it has a larger mark. Domain: `mark` is 1 to 255.
-    #[inline(always)]
+    #[inline]
     fn mark(&mut self, pixel: i32, mark: i32) {
         let Some(own) = self.marks.get_mut(pixel as usize) else { return };
         let old = i32::from(*own);
@@ -129,7 +129,7 @@ impl Notes<'_> {
 }
 
 /// The mark for a share of the neighbour in a direction; `share` is Q.16 and less than a half.
-#[inline(always)]
+#[inline]
 fn share_of(share: i32, direction: i32) -> i32 {
     (share >> (16 - SHARE)).clamp(0, (1 << (SHARE - 1)) - 1) << DIRECTION | direction
 }

@@ -145,7 +145,7 @@ impl<'r> Prepared<'r> {
         prepared
     }
 
-    #[inline(always)]
+    #[inline]
     fn empty(settings: &'r Settings, scene: &'r Scene<'_>, memory: &'r mut Memory<'_>, region: &'r Region) -> Empty<'r> {
         let Memory { vertices, entries, depth, placements, order, reflectances, tables, error_bounds, smoothing, active_triangles } =
             memory;
@@ -180,7 +180,7 @@ impl<'r> Prepared<'r> {
     }
 
     /// Completes the frame, once all triangles are in the bins and `cache` has the vertices.
-    #[inline(always)]
+    #[inline]
     fn complete(&mut self, cache: &'r [ScreenVertex], depth_elision: Option<DepthElision>) {
         let Self { context, part } = self;
         (context.vertices, context.depth_elision) = (cache, depth_elision);
@@ -446,7 +446,7 @@ impl<'r> PreparationPart<'_, 'r> {
 }
 
 /// The pixels for which triangles of a mesh are kept.
-#[inline(always)]
+#[inline]
 fn area_of(context: &Context<'_>, placed: &PlacedMesh<'_>) -> Bounds {
     let (settings, region) = (context.settings, context.region);
     let mut area = Bounds::from(&settings.touched(&region.within(&settings.touched(&placed.placement.area))));

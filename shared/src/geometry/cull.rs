@@ -163,7 +163,7 @@ impl Extent {
     }
 
     /// Whether the triangle is word-sized, see [`fits_words`].
-    #[inline(always)]
+    #[inline]
     pub(crate) fn fits_words(&self) -> bool {
         fits_words(((self.right - self.left) | (self.bottom - self.top)) as u32, self.area)
     }
@@ -181,7 +181,7 @@ const WORD_SIDE: u32 = 10;
 
 /// Whether a triangle is word-sized: so small, and so far from [`crate::setup::gradients::MAX_THINNESS`], that its polynomials are set up in words.
 /// `size` is the larger of width and height of its bounding box, or the bitwise or of both. `area` is twice its area.
-#[inline(always)]
+#[inline]
 pub(crate) fn fits_words(size: u32, area: i32) -> bool {
     // 2^(2 bits) <= 128 area.
     size < 1 << WORD_SIDE && area > 1 && 64 - 2 * leading_zeros(size) + leading_zeros(area as u32) <= 38

@@ -65,7 +65,7 @@ impl DepthElision {
     }
 
     /// Takes a triangle into account that may show its front: marks the cells around it unless it is thick.
-    #[inline(always)]
+    #[inline]
     pub(crate) fn include(&mut self, extent: &Extent) {
         let (columns, rows) = ([extent.left, extent.right], [extent.top, extent.bottom]);
         // The thickness is at least twice the area over the length.
@@ -101,14 +101,14 @@ impl DepthElision {
         self.marked.get(rows).is_none_or(|rows| rows.iter().any(|row| row & columns != 0))
     }
 
-    #[inline(always)]
+    #[inline]
     fn is_inside(&self, [left, right]: [i32; 2], [top, bottom]: [i32; 2]) -> bool {
         let [width, height] = self.size;
         left | top | (width - right) | (height - bottom) >= 0
     }
 
     /// Rows and columns of the grid that a box in the viewport touches.
-    #[inline(always)]
+    #[inline]
     fn cells(&self, [left, right]: [i32; 2], [top, bottom]: [i32; 2]) -> (RangeInclusive<usize>, u32) {
         let [across, down] = self.scale;
         // Written out, as the compiler makes loops of maps on Armv6-M.

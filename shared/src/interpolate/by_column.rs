@@ -24,7 +24,7 @@ impl<P: Patch<Walker: Copy>> Patch for ByColumn<P> {
         self.0.jump(rows);
     }
 
-    #[inline(always)]
+    #[inline]
     fn step_row(&mut self) {
         self.0.step_row();
     }
@@ -34,7 +34,7 @@ impl<P: Patch<Walker: Copy>> Patch for ByColumn<P> {
         AtColumn { patch: self.0, walker: self.0.enter(x), x }
     }
 
-    #[inline(always)]
+    #[inline]
     fn raised(self, by: &<P::Walker as Walker>::Value) -> Self {
         Self(self.0.raised(by))
     }
@@ -43,22 +43,22 @@ impl<P: Patch<Walker: Copy>> Patch for ByColumn<P> {
 
     const FIELDS: Option<[usize; 2]> = P::FIELDS;
 
-    #[inline(always)]
+    #[inline]
     fn planes(&mut self) -> &mut [Plane] {
         self.0.planes()
     }
 
-    #[inline(always)]
+    #[inline]
     fn lend<'a>(&'a mut self, fields: &mut Fields<'a>) {
         self.0.lend(fields);
     }
 
-    #[inline(always)]
+    #[inline]
     fn save(&self, words: &mut [u32]) {
         self.0.save(words);
     }
 
-    #[inline(always)]
+    #[inline]
     fn load(words: &[u32]) -> Option<Self> {
         P::load(words).map(Self)
     }
@@ -75,7 +75,7 @@ impl Patch for Column {
     #[inline(always)]
     fn jump(&mut self, _: i32) {}
 
-    #[inline(always)]
+    #[inline]
     fn step_row(&mut self) {}
 
     #[inline(always)]
@@ -91,7 +91,7 @@ pub struct ColumnWalker(i32);
 impl Walker for ColumnWalker {
     type Value = i32;
 
-    #[inline(always)]
+    #[inline]
     fn step(&mut self) {
         self.0 = self.0.wrapping_sub(1);
     }
@@ -113,7 +113,7 @@ pub struct AtColumn<P: Patch> {
 impl<P: Patch> Walker for AtColumn<P> {
     type Value = <P::Walker as Walker>::Value;
 
-    #[inline(always)]
+    #[inline]
     fn step(&mut self) {
         if EVALUATES {
             self.x = self.x.wrapping_sub(1);
@@ -134,12 +134,12 @@ impl<P: Patch> Walker for AtColumn<P> {
 
     const HAS_HOLES: bool = P::Walker::HAS_HOLES;
 
-    #[inline(always)]
+    #[inline]
     fn may_have_holes(&self) -> bool {
         self.walker.may_have_holes()
     }
 
-    #[inline(always)]
+    #[inline]
     fn covers(value: &Self::Value) -> bool {
         P::Walker::covers(value)
     }

@@ -40,7 +40,7 @@ pub trait Surface: Copy {
     fn at(&self, point: &Point) -> Self::Value;
 
     /// The quantity with `by` added to its values, see [`Patch::raised`].
-    #[inline(always)]
+    #[inline]
     fn raised(self, _by: &Self::Value) -> Self {
         self
     }
@@ -130,7 +130,7 @@ pub struct PerspectiveWalker<S> {
 impl<S: Surface> Walker for PerspectiveWalker<S> {
     type Value = S::Value;
 
-    #[inline(always)]
+    #[inline]
     fn step(&mut self) {
         for (value, step) in self.value.iter_mut().zip(self.step) {
             *value = value.wrapping_sub(step);
@@ -181,7 +181,7 @@ impl<S: Surface> Patch for Seen<S> {
         self.numerators.jump(rows);
     }
 
-    #[inline(always)]
+    #[inline]
     fn step_row(&mut self) {
         self.numerators.step_row();
     }
@@ -191,7 +191,7 @@ impl<S: Surface> Patch for Seen<S> {
         SeenWalker { numerators: self.numerators.enter(x), surface: self.surface }
     }
 
-    #[inline(always)]
+    #[inline]
     fn raised(self, by: &S::Value) -> Self {
         Self { surface: self.surface.raised(by), ..self }
     }
@@ -224,7 +224,7 @@ impl<const CH: usize> Surface for Slant<CH> {
         values
     }
 
-    #[inline(always)]
+    #[inline]
     fn raised(mut self, by: &[u32; CH]) -> Self {
         each_channel::<CH>(|channel| self.base[channel] = self.base[channel].wrapping_add(by[channel] as i32));
         self
@@ -241,7 +241,7 @@ pub(crate) struct SeenWalker<S> {
 impl<S: Surface> Walker for SeenWalker<S> {
     type Value = S::Value;
 
-    #[inline(always)]
+    #[inline]
     fn step(&mut self) {
         self.numerators.step();
     }
@@ -271,7 +271,7 @@ impl Point {
 
     /// The point with the barycentric coordinates `s / whole` and `t / whole` of corners 1 and 2, moved into the triangle. Beside a sliver one over
     /// the distance nears zero, and quotients would grow without limit.
-    #[inline(always)]
+    #[inline]
     fn new(s: i64, t: i64, whole: i64) -> Self {
         // All are shifted up until `whole` fills 32 bits, and the numerators 30; the reciprocal of `whole` is 2^62 over it.
         let zeros = whole.max(1).leading_zeros();
@@ -283,7 +283,7 @@ impl Point {
     }
 
     /// Lagrange's weights of corners and edge midpoints, b (2b - 1) and 4 b b'.
-    #[inline(always)]
+    #[inline]
     pub(crate) fn six(&self) -> [i32; 6] {
         let [a, b, c] = self.0.map(i64::from);
         let corner = |u: i64| ((u * (2 * u - ONE)) >> SHARE) as i32;

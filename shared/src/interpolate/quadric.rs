@@ -39,7 +39,7 @@ macro_rules! quadric_row {
 
         impl $name {
             /// The polynomial with these coefficients at the column `x`, and `bias` added to its values.
-            #[inline(always)]
+            #[inline]
             pub(super) fn new([c, dx, dy, dxx, dxy, dyy]: [$number; 6], x: $number, bias: $number) -> Self {
                 // The move to column 0 is exact.
                 let bend = dxx.wrapping_mul(x);
@@ -54,7 +54,7 @@ macro_rules! quadric_row {
             }
 
             /// Moves down `rows` rows, of which there are `pairs` pairs: rows (rows - 1) / 2.
-            #[inline(always)]
+            #[inline]
             pub(super) fn jump(&mut self, rows: $number, pairs: $number) {
                 self.c = self.c.wrapping_add(self.c_down.wrapping_mul(rows)).wrapping_add(self.c_down2.wrapping_mul(pairs));
                 self.c_down = self.c_down.wrapping_add(self.c_down2.wrapping_mul(rows));
@@ -62,7 +62,7 @@ macro_rules! quadric_row {
             }
 
             /// Moves down one row.
-            #[inline(always)]
+            #[inline]
             pub(super) fn step_row(&mut self) {
                 self.c = self.c.wrapping_add(self.c_down);
                 self.c_down = self.c_down.wrapping_add(self.c_down2);
@@ -70,7 +70,7 @@ macro_rules! quadric_row {
             }
 
             /// The value on column `x`, its difference to the next column on the left, and the difference of differences.
-            #[inline(always)]
+            #[inline]
             pub(super) fn at(&self, x: $number) -> [$number; 3] {
                 let bend = self.dxx.wrapping_mul(x);
                 // V(x - 1) - V(x) = dxx - dx - 2 dxx x.
@@ -144,7 +144,7 @@ fn long<const BITS: u32>(gradients: &Gradients, nodes: [i32; 6], extra: u32) -> 
 
 /// A plane as a quadratic that does not bend.
 impl<const CH: usize> From<Plane<CH>> for Quadric<CH> {
-    #[inline(always)]
+    #[inline]
     fn from(plane: Plane<CH>) -> Self {
         Self(plane.coefficients().map(|[c, dx, dy]| QuadricRow { c, c_down: dy, c_down2: 0, dx, dx_down: 0, dxx: 0 }))
     }
@@ -162,12 +162,12 @@ impl<const CH: usize> Patch for Quadric<CH> {
         }
     }
 
-    #[inline(always)]
+    #[inline]
     fn step_row(&mut self) {
         each_channel::<CH>(|c| self.0[c].step_row());
     }
 
-    #[inline(always)]
+    #[inline]
     fn raised(mut self, by: &[u32; CH]) -> Self {
         each_channel::<CH>(|c| self.0[c].c = self.0[c].c.wrapping_add(by[c] as i32));
         self
@@ -177,14 +177,14 @@ impl<const CH: usize> Patch for Quadric<CH> {
 
     const FIELDS: Option<[usize; 2]> = Some([0, CH]);
 
-    #[inline(always)]
+    #[inline]
     fn lend<'a>(&'a mut self, fields: &mut Fields<'a>) {
         if let Some(row) = self.0.first_mut() {
             fields.set_square(transmute_mut!(row));
         }
     }
 
-    #[inline(always)]
+    #[inline]
     fn save(&self, words: &mut [u32]) {
         let (rows, _) = words.as_chunks_mut::<6>();
         for (words, row) in rows.iter_mut().zip(&self.0) {
@@ -192,7 +192,7 @@ impl<const CH: usize> Patch for Quadric<CH> {
         }
     }
 
-    #[inline(always)]
+    #[inline]
     fn load(words: &[u32]) -> Option<Self> {
         let (rows, _) = words.as_chunks::<6>();
         Some(Self(rows.first_chunk::<CH>()?.map(|words| transmute!(words))))
@@ -215,7 +215,7 @@ impl<const CH: usize> Patch for Quadric<CH> {
 }
 
 impl<const CH: usize> Checkerboard for Quadric<CH> {
-    #[inline(always)]
+    #[inline]
     fn checkered(mut self, row: i32) -> Self {
         for channel in &mut self.0 {
             channel.c = channel.c.wrapping_add(HALF_RANGE.wrapping_mul(row));
@@ -239,7 +239,7 @@ impl<const CH: usize> QuadraticWalker<CH> {
     pub(super) const ZERO: Self = Self { value: [0; CH], d1: [0; CH], d2: [0; CH] };
 
     /// Sets the value of a channel, its next difference, and the difference of differences.
-    #[inline(always)]
+    #[inline]
     pub(super) fn start(&mut self, channel: usize, differences: [i32; 3]) {
         let [value, d1, d2] = differences;
         (self.value[channel], self.d1[channel], self.d2[channel]) = (value as u32, d1 as u32, d2 as u32);
@@ -249,7 +249,7 @@ impl<const CH: usize> QuadraticWalker<CH> {
 impl<const CH: usize> Walker for QuadraticWalker<CH> {
     type Value = [u32; CH];
 
-    #[inline(always)]
+    #[inline]
     fn step(&mut self) {
         if CH == 1 {
             // Measured: one channel in a loop leaves the compiler a shorter pixel loop.

@@ -16,7 +16,7 @@ impl<P> Squares<P> {
         Self { inner: patch, now: HALF_RANGE.wrapping_mul(row) as u32 }
     }
 
-    #[inline(always)]
+    #[inline]
     fn step(&mut self, by: i32) {
         self.now = self.now.wrapping_add(HALF_RANGE.wrapping_mul(by) as u32);
     }
@@ -31,7 +31,7 @@ impl<P: Patch<Walker: Walker<Value = [u32; 1]>>> Patch for Squares<P> {
         self.step(rows);
     }
 
-    #[inline(always)]
+    #[inline]
     fn step_row(&mut self) {
         self.inner.step_row();
         self.step(1);
@@ -48,7 +48,7 @@ impl<P: Patch<Walker: Walker<Value = [u32; 1]>>> Patch for Squares<P> {
 impl<W: Walker<Value = [u32; 1]>> Walker for Squares<W> {
     type Value = [u32; 1];
 
-    #[inline(always)]
+    #[inline]
     fn step(&mut self) {
         self.inner.step();
         self.now ^= HALF_RANGE as u32;

@@ -48,7 +48,7 @@ impl Albedo {
     pub(crate) const WHITE: Self = Self { red_green: u32::MAX, blue: 0xFFFF };
 
     /// A colour of a palette. In greys all shares are that of its luma, by the weights of Rec. 601.
-    #[inline(always)]
+    #[inline]
     pub(crate) fn new(Colour { channels: [r, g, b], .. }: Colour, is_gray: bool) -> Self {
         let (r, g, b) = (u32::from(r), u32::from(g), u32::from(b));
         if is_gray {
@@ -60,13 +60,13 @@ impl Albedo {
     }
 
     /// The colour of three shares.
-    #[inline(always)]
+    #[inline]
     fn of([r, g, b]: [u16; 3]) -> Self {
         Self { red_green: u32::from(r) | u32::from(g) << 16, blue: b.into() }
     }
 
     /// The three shares.
-    #[inline(always)]
+    #[inline]
     fn channels(self) -> [u16; 3] {
         [self.red_green as u16, (self.red_green >> 16) as u16, self.blue as u16]
     }
@@ -120,7 +120,7 @@ impl Albedo {
     }
 
     /// The colour of three corners; `None` if they differ.
-    #[inline(always)]
+    #[inline]
     pub(crate) fn one(&[a, b, c]: &[Self; 3]) -> Option<Self> {
         (a == b && b == c).then_some(a)
     }
@@ -132,7 +132,7 @@ impl Albedo {
     }
 
     /// The levels of a vertex that holds [`Parts`], at a corner of this colour.
-    #[inline(always)]
+    #[inline]
     pub(crate) fn lit_vertex(self, [r, g, b, spare]: [i32; 4]) -> [i32; 3] {
         // In words, and so without an array of each part. What is wanted of the fourth number stands in its lower bits.
         let lit = |parts: i32, share: u16| {

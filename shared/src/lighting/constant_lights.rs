@@ -47,7 +47,7 @@ pub(crate) trait SurfaceColour {
 
 /// Walked shares.
 impl SurfaceColour for [u32; 3] {
-    #[inline(always)]
+    #[inline]
     fn shares(self) -> [u32; 3] {
         self
     }
@@ -55,7 +55,7 @@ impl SurfaceColour for [u32; 3] {
 
 /// The colour of a texel.
 impl SurfaceColour for Colour {
-    #[inline(always)]
+    #[inline]
     fn shares(self) -> [u32; 3] {
         let Self { channels: [r, g, b], .. } = self;
         // From 255 to 65,535 of 65,536.
@@ -65,7 +65,7 @@ impl SurfaceColour for Colour {
 }
 
 /// Multiplies a level by a walked share. Both levels have one format, in which they are not negative.
-#[inline(always)]
+#[inline]
 fn painted(level: i32, share: u32) -> i32 {
     // 16 bits of each make a word. At the rim of a triangle a share may be a little less than 0.
     (level >> 15).wrapping_mul((share as i32) >> (COLOUR - 15))
@@ -114,7 +114,7 @@ pub trait Shades<L>: LitColours {
     const NUMERATORS: usize = 0;
 
     /// The kernel.
-    #[inline(always)]
+    #[inline]
     fn lit<'a>(&'a self, _: kernels::Lookup<'a>) -> Option<kernels::Lit<'a>> {
         None
     }
@@ -180,7 +180,7 @@ impl<C: Pixel> Shades<WithHighlight> for OneLightRamp<'_, C> {
 
     const NUMERATORS: usize = 2;
 
-    #[inline(always)]
+    #[inline]
     fn lit<'k>(&'k self, lookup: kernels::Lookup<'k>) -> Option<kernels::Lit<'k>> {
         let [even, odd] = self.ramps.both();
         C::lit(kernels::Colours::Table([C::ramp(even)?, C::ramp(odd)?]), 1, lookup)
@@ -194,7 +194,7 @@ impl<C: Pixel> Shades<DiffuseOnly> for OneLightRamp<'_, C> {
 
     const NUMERATORS: usize = 1;
 
-    #[inline(always)]
+    #[inline]
     fn lit<'k>(&'k self, lookup: kernels::Lookup<'k>) -> Option<kernels::Lit<'k>> {
         let [even, odd] = self.ramps.both();
         let lookup = kernels::Lookup { top: (self.floor << (KERNEL_BITS - LEVEL)) as i32, ..lookup };
@@ -251,7 +251,7 @@ impl Sum {
     }
 
     /// The sum on a surface that reflects a `share` of ambient and diffuse light, Q0.16. `ambient` is the level of ambient light alone.
-    #[inline(always)]
+    #[inline]
     pub(super) fn painted(self, ambient: i32, share: i32) -> Self {
         let reflected = |level: i32| (unsigned_product(level as u32, share as u32) >> SHARE) as i32;
         let lit = reflected(ambient);
@@ -288,7 +288,7 @@ impl Sum {
 const _: () = assert!(ENTRY + LEVEL - 1 == CHANNEL);
 
 /// A walked diffuse level as a cosine from 0 to 1, Q1.15.
-#[inline(always)]
+#[inline]
 pub(crate) fn cosine(bits: u32, diffuse: i32) -> i32 {
     // Armv7-M shifts and clamps by one instruction.
     (diffuse >> ((bits + FULL_BITS - FACTOR) & 31)).clamp(0, (1 << FACTOR) - 1)
@@ -301,13 +301,13 @@ impl<'a, C: Pixel> OneLightRgb<'a, C> {
     }
 
     /// The sums as kernels read them.
-    #[inline(always)]
+    #[inline]
     fn in_kernels(&self) -> [&'a kernels::Sums; 2] {
         self.0.both().map(|sums| transmute_ref!(sums))
     }
 
     /// The colour of one cosine, Q1.15, and a highlight, unsigned Q0.16, on even rows and on odd ones.
-    #[inline(always)]
+    #[inline]
     pub fn by_turns(&self, cosine: i32, highlight: u32) -> [C::Stored; 2] {
         let [[r, g, b], [odd_r, odd_g, odd_b]] = self.0.both();
         let (cosine, highlight) = (cosine.clamp(0, (1 << FACTOR) - 1), highlight as i32);
@@ -330,7 +330,7 @@ impl<C: Pixel> LitColours for OneLightRgb<'_, C> {
 }
 
 impl<C: Pixel, L: MayHaveHighlight> Shades<L> for OneLightRgb<'_, C> {
-    #[inline(always)]
+    #[inline]
     fn colour(&self, bits: u32, light: L) -> C {
         let WithHighlight(diffuse, highlight) = light.into();
         let ([r, g, b], cosine, highlight) = (self.0.now(), cosine(bits, diffuse), highlight as i32);
@@ -339,7 +339,7 @@ impl<C: Pixel, L: MayHaveHighlight> Shades<L> for OneLightRgb<'_, C> {
 
     const NUMERATORS: usize = 1 + L::HIGHLIGHTS;
 
-    #[inline(always)]
+    #[inline]
     fn lit<'k>(&'k self, lookup: kernels::Lookup<'k>) -> Option<kernels::Lit<'k>> {
         C::lit(kernels::Colours::Light(self.in_kernels()), L::HIGHLIGHTS, lookup)
     }
@@ -358,7 +358,7 @@ impl<'a, C: Pixel> ColouredRgb<'a, C> {
 }
 
 impl<C: Pixel> ByRows for ColouredRgb<'_, C> {
-    #[inline(always)]
+    #[inline]
     fn step_row(&mut self) {
         self.0.step_row();
     }
@@ -369,7 +369,7 @@ impl<C: Pixel> LitColours for ColouredRgb<'_, C> {
 }
 
 impl<C: Pixel, L: MayHaveHighlight> Shades<Coloured<L>> for ColouredRgb<'_, C> {
-    #[inline(always)]
+    #[inline]
     fn colour(&self, bits: u32, Coloured(light, [red, green, blue]): Coloured<L>) -> C {
         let WithHighlight(diffuse, highlight) = light.into();
         let ([r, g, b], cosine, highlight) = (self.0.now(), cosine(bits, diffuse), highlight as i32);
@@ -382,7 +382,7 @@ impl<C: Pixel, L: MayHaveHighlight> Shades<Coloured<L>> for ColouredRgb<'_, C> {
 
     const NUMERATORS: usize = 4 + L::HIGHLIGHTS;
 
-    #[inline(always)]
+    #[inline]
     fn lit<'k>(&'k self, lookup: kernels::Lookup<'k>) -> Option<kernels::Lit<'k>> {
         C::lit(kernels::Colours::PaintedLight(self.0.both()), L::HIGHLIGHTS, lookup)
     }
@@ -402,7 +402,7 @@ pub struct NeutralRgb<C> {
 
 impl<C: Pixel> NeutralRgb<C> {
     /// The levels of these sums for even rows, which are dithered by `quarter`; `None` if red and blue differ.
-    #[inline(always)]
+    #[inline]
     pub(super) fn new([r, g, b]: &Sums, quarter: i32) -> Option<Self> {
         let [even, odd] = [half_step(8).wrapping_sub(quarter), half_step(8).wrapping_add(quarter)];
         let [more_r, more_g, more_b] = steps(C::LEVELS, even);
@@ -412,7 +412,7 @@ impl<C: Pixel> NeutralRgb<C> {
     }
 
     /// The level and the colour of a surface with these shares, Q0.16, `raise` (Q9.7) higher; `None` if green is not lit as red and blue are.
-    #[inline(always)]
+    #[inline]
     pub(super) fn tint(&self, [red, green, blue]: [i32; 3], raise: i32) -> Option<(TintLevel, Tint<C>)> {
         let Self { outer, middle, rounding } = self;
         // The largest levels of channels are as 1 - 2^-bits. Levels are rounded to the nearest, so that products with such a number of 8 bits differ
@@ -458,7 +458,7 @@ impl TintLevel {
 
 impl<C: Pixel> Tint<C> {
     /// The colour at a level, Q10.22.
-    #[inline(always)]
+    #[inline]
     pub(crate) fn lit(&self, level: u32) -> C {
         let ([red, green, blue], level, (more, green_more)) = (self.shares, (level >> FACTOR) as i32, self.added.now());
         let channel = |share: i32, more: i32| more.wrapping_add(level.wrapping_mul(share));
@@ -467,14 +467,14 @@ impl<C: Pixel> Tint<C> {
 }
 
 impl<C: Pixel> ByRows for Tint<C> {
-    #[inline(always)]
+    #[inline]
     fn step_row(&mut self) {
         self.added.step_row();
     }
 }
 
 impl<C: Pixel> ByRows for NeutralRgb<C> {
-    #[inline(always)]
+    #[inline]
     fn step_row(&mut self) {
         self.rounding.step_row();
     }
@@ -485,7 +485,7 @@ impl<C: Pixel> LitColours for NeutralRgb<C> {
 }
 
 impl<C: Pixel, L: Into<WithHighlight>> Shades<Coloured<L>> for NeutralRgb<C> {
-    #[inline(always)]
+    #[inline]
     fn colour(&self, bits: u32, Coloured(light, [red, green, blue]): Coloured<L>) -> C {
         let WithHighlight(diffuse, highlight) = light.into();
         let (Self { outer, middle, .. }, cosine, highlight) = (self, cosine(bits, diffuse), highlight as i32);
@@ -516,7 +516,7 @@ pub struct SummedColours<'a, C: Pixel> {
 }
 
 impl<C: Pixel> ByRows for SummedColours<'_, C> {
-    #[inline(always)]
+    #[inline]
     fn step_row(&mut self) {
         self.ambient.step_row();
     }
@@ -528,7 +528,7 @@ impl<C: Pixel> LitColours for SummedColours<'_, C> {
 
 impl<'a, C: Pixel> SummedColours<'a, C> {
     /// The colours where ambient light is that of these sums, for even rows and for odd ones.
-    #[inline(always)]
+    #[inline]
     pub(crate) fn in_ambient<'s>(&self, [even, odd]: &'s [Sums; 2]) -> SummedColours<'s, C>
     where
         'a: 's,
@@ -537,13 +537,13 @@ impl<'a, C: Pixel> SummedColours<'a, C> {
     }
 
     /// Whether levels have no fewer fraction bits than [`SummedRgb`] has.
-    #[inline(always)]
+    #[inline]
     pub(crate) fn is_fine(&self) -> bool {
         self.bits == CHANNEL - INTENSITY
     }
 
     /// The colours with the factors of two highlights for [`SummedRgb`]: of a surface of one colour, or where `pure` is the level of ambient light alone.
-    #[inline(always)]
+    #[inline]
     pub(crate) fn shares(&self, pure: Option<&[i32; 3]>, [first, second]: [[i32; 3]; 2]) -> [Shares; 2] {
         self.ambient.both().map(|sums| {
             let levels = map(*sums, |sum| sum.ambient);
@@ -556,7 +556,7 @@ impl<'a, C: Pixel> SummedColours<'a, C> {
     }
 
     /// The levels of this diffuse light and of ambient light.
-    #[inline(always)]
+    #[inline]
     pub(crate) fn levels(&self, Summed([red, green, blue]): Summed) -> [i32; 3] {
         let [r, g, b] = self.ambient.now();
         let level = |ambient: &Sum, sum: i32| ambient.ambient.wrapping_add(sum << (CHANNEL - SUMMED));
@@ -564,7 +564,7 @@ impl<'a, C: Pixel> SummedColours<'a, C> {
     }
 
     /// Levels of ambient and diffuse light on a surface of a walked colour, where `pure` is what they have of ambient light alone.
-    #[inline(always)]
+    #[inline]
     pub(crate) fn painted(&self, levels: [i32; 3], [pure_r, pure_g, pure_b]: [i32; 3], [red, green, blue]: [u32; 3]) -> [i32; 3] {
         let ([r, g, b], [level_r, level_g, level_b]) = (self.ambient.now(), levels);
         let level = |sum: &Sum, level: i32, pure: i32, share: u32| {
@@ -575,7 +575,7 @@ impl<'a, C: Pixel> SummedColours<'a, C> {
     }
 
     /// The colour of levels.
-    #[inline(always)]
+    #[inline]
     pub(crate) fn mixed(&self, [r, g, b]: [i32; 3]) -> C {
         // Armv7-M clamps by one instruction.
         let intensity = |level: i32, more: i32| (level >> (self.bits & 31)).wrapping_add(more).clamp(0, (1 << (8 + INTENSITY)) - 1);
@@ -610,7 +610,7 @@ impl<'a, C: Pixel> SummedRgb<'a, C> {
 }
 
 impl<C: Pixel> ByRows for SummedRgb<'_, C> {
-    #[inline(always)]
+    #[inline]
     fn step_row(&mut self) {
         self.shares.step_row();
     }
@@ -623,19 +623,19 @@ impl<C: Pixel> LitColours for SummedRgb<'_, C> {
 }
 
 /// Adds a sum to the ambient light of a channel.
-#[inline(always)]
+#[inline]
 fn summed(&[_, ambient, ..]: &[i32; 4], sum: i32) -> i32 {
     ambient.wrapping_add(sum << (CHANNEL - SUMMED))
 }
 
 /// Adds highlights to the level of a channel.
-#[inline(always)]
+#[inline]
 fn highlit(level: i32, &[_, _, first, second]: &[i32; 4], [one, two]: [u32; 2]) -> i32 {
     level.wrapping_add(first.wrapping_mul(one as i32)).wrapping_add(second.wrapping_mul(two as i32))
 }
 
 impl<C: Pixel> Shades<SummedWithHighlights> for SummedRgb<'_, C> {
-    #[inline(always)]
+    #[inline]
     fn colour(&self, _: u32, SummedWithHighlights(Summed([red, green, blue]), highlights): SummedWithHighlights) -> C {
         let [r, g, b] = self.shares.now();
         let level = |shares: &[i32; 4], sum: i32| highlit(summed(shares, sum), shares, highlights);
@@ -644,14 +644,14 @@ impl<C: Pixel> Shades<SummedWithHighlights> for SummedRgb<'_, C> {
 
     const NUMERATORS: usize = 5;
 
-    #[inline(always)]
+    #[inline]
     fn lit<'k>(&'k self, lookup: kernels::Lookup<'k>) -> Option<kernels::Lit<'k>> {
         C::lit(kernels::Colours::Summed(self.shares.both()), self.highlights, lookup)
     }
 }
 
 impl<C: Pixel> Shades<Coloured<SummedWithHighlights>> for SummedRgb<'_, C> {
-    #[inline(always)]
+    #[inline]
     fn colour(&self, _: u32, Coloured(light, [red, green, blue]): Coloured<SummedWithHighlights>) -> C {
         let (SummedWithHighlights(Summed(sums), highlights), [r, g, b]) = (light, self.shares.now());
         let level = |shares: &[i32; 4], sum: i32, share: u32| {
@@ -663,14 +663,14 @@ impl<C: Pixel> Shades<Coloured<SummedWithHighlights>> for SummedRgb<'_, C> {
 
     const NUMERATORS: usize = 8;
 
-    #[inline(always)]
+    #[inline]
     fn lit<'k>(&'k self, lookup: kernels::Lookup<'k>) -> Option<kernels::Lit<'k>> {
         C::lit(kernels::Colours::PaintedSum(self.shares.both()), self.highlights, lookup)
     }
 }
 
 impl<C: Pixel> Shades<Summed> for SummedColours<'_, C> {
-    #[inline(always)]
+    #[inline]
     fn colour(&self, _: u32, sum: Summed) -> C {
         self.mixed(self.levels(sum))
     }
@@ -687,7 +687,7 @@ impl<C: Pixel> LitColours for TwoLightsRgb<'_, C> {
 }
 
 impl<C: Pixel, A: MayHaveHighlight, B: MayHaveHighlight> Shades<(A, B)> for TwoLightsRgb<'_, C> {
-    #[inline(always)]
+    #[inline]
     fn colour(&self, bits: u32, (one, two): (A, B)) -> C {
         let [[r, g, b], [r2, g2, b2]] = self.0.now();
         let (WithHighlight(c, h), WithHighlight(c2, h2)) = (one.into(), two.into());
@@ -703,7 +703,7 @@ impl<C: Pixel, A: MayHaveHighlight, B: MayHaveHighlight> Shades<(A, B)> for TwoL
 
     const NUMERATORS: usize = if A::HIGHLIGHTS < B::HIGHLIGHTS { 0 } else { 2 + A::HIGHLIGHTS + B::HIGHLIGHTS };
 
-    #[inline(always)]
+    #[inline]
     fn lit<'k>(&'k self, lookup: kernels::Lookup<'k>) -> Option<kernels::Lit<'k>> {
         let sums = self.0.both().map(|sums| transmute_ref!(sums));
         C::lit(kernels::Colours::TwoLights(sums), A::HIGHLIGHTS + B::HIGHLIGHTS, lookup)
@@ -712,7 +712,7 @@ impl<C: Pixel, A: MayHaveHighlight, B: MayHaveHighlight> Shades<(A, B)> for TwoL
 
 impl<'a, C> TwoLightsRgb<'a, C> {
     /// The colours of the first light alone.
-    #[inline(always)]
+    #[inline]
     pub fn first(&self) -> OneLightRgb<'a, C> {
         OneLightRgb(self.0.map(|[first, _]| first))
     }

@@ -279,7 +279,7 @@ pub fn cosine(a: [i32; 3], b: [i32; 3]) -> i32 {
 
 /// The dot product of a vector no longer than 2^`BITS` and a unit vector, Q2.30, in the format of the former with its `BITS` bits taken
 /// off: rounded down. Exact, from products of 32 bits where longer ones are calls.
-#[inline(always)]
+#[inline]
 fn scaled_dot<const BITS: u32>(v: [i32; 3], unit: [i32; 3]) -> i32 {
     if !HALVES {
         return (dot(v, unit) >> BITS) as i32;
@@ -291,7 +291,7 @@ fn scaled_dot<const BITS: u32>(v: [i32; 3], unit: [i32; 3]) -> i32 {
 }
 
 /// [`cosine`] of a vertex normal, [`crate::format::Unit`], and a unit vector. The result has the same bits and is computed faster.
-#[inline(always)]
+#[inline]
 pub fn vertex_cosine(normal: [i32; 3], direction: [i32; 3]) -> i32 {
     scaled_dot::<UNIT>(normal, direction)
 }
@@ -351,7 +351,7 @@ impl UnitNormal for InterpolatedNormal {
 }
 
 /// A cosine with an interpolated normal, Q2.30, divided by the normal's length. Half of the reciprocal length is Q2.30. Error: 2^-27.
-#[inline(always)]
+#[inline]
 pub(crate) fn over_length(cosine: i32, half_reciprocal: i32) -> i32 {
     upper(cosine, half_reciprocal) << 3
 }

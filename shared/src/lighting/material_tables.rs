@@ -30,7 +30,7 @@ fn rounded(level: i32, bits: u32) -> i32 {
 }
 
 /// The colour of three levels, Q9.7, by a [`crate::pixel::dither::threshold`].
-#[inline(always)]
+#[inline]
 fn mixed<C: Pixel>(levels: [i32; 3], threshold: u32) -> C {
     // Thresholds are 1/64 of half a step.
     C::mixed(zip(levels, C::LEVELS, |level, bits| (level << (CHANNEL - LEVEL)) + threshold as i32 * (half_step(bits) >> 6)))
@@ -75,7 +75,7 @@ impl<'a, C: Pixel> MaterialTables<'a, C> {
 
     /// The table of colours of a triangle in three channels under the only light, where that has no highlight; `None` unless
     /// [`Reflectance::has_ramp`].
-    #[inline(always)]
+    #[inline]
     pub fn diffuse_ramp(&self) -> Option<OneLightRamp<'a, C>> {
         let (ramps, [ambient, diffuse]) = (ByTurns::new(self.ramps.squares()), self.reflectance.ramp);
         self.reflectance.has_ramp().then(|| OneLightRamp { ramps, diffuse: diffuse as u16, floor: Reflectance::biased(ambient) })
@@ -95,7 +95,7 @@ impl<'a, C: Pixel> MaterialTables<'a, C> {
     }
 
     /// The colours of [`Self::coloured`] where red and blue have the same levels.
-    #[inline(always)]
+    #[inline]
     pub(crate) fn neutral_rgb(&self) -> Option<NeutralRgb<C>> {
         let [[even, ..], _] = &self.reflectance.reflectance().sums;
         NeutralRgb::new(even, self.reflectance.quarter)
@@ -124,14 +124,14 @@ impl<'a, C: Pixel> MaterialTables<'a, C> {
     }
 
     /// The sums of three channels under the first light.
-    #[inline(always)]
+    #[inline]
     fn sums(&self) -> OneLightRgb<'a, C> {
         let [[even, ..], [odd, ..]] = &self.reflectance.reflectance().sums;
         OneLightRgb(ByTurns::new([even, odd]))
     }
 
     /// The sums of three channels under two lights in the order of the stream, and in the other, if [`Reflectance::lights`] is 2.
-    #[inline(always)]
+    #[inline]
     pub fn two_lights_rgb(&self) -> Option<[TwoLightsRgb<'a, C>; 2]> {
         let [even, odd] = &self.reflectance.reflectance().sums;
         let forth = ByTurns::new([even.first_chunk()?, odd.first_chunk()?]);
@@ -140,14 +140,14 @@ impl<'a, C: Pixel> MaterialTables<'a, C> {
     }
 
     /// The colours where light is summed. Domain: [`Reflectance::sums_lights`].
-    #[inline(always)]
+    #[inline]
     pub(crate) fn summed_colours(&self) -> SummedColours<'a, C> {
         let (OneLightRgb(ambient), [greys, _]) = (self.sums(), self.ramps.squares());
         SummedColours { ambient, greys, bits: CHANNEL - INTENSITY - self.reflectance.excess() }
     }
 
     /// The colour under one light from `[N·L, N·H]` (Q2.30), on even rows and on odd ones.
-    #[inline(always)]
+    #[inline]
     pub fn one_light(&self, cosines: [i32; 2]) -> [C::Stored; 2] {
         if self.three_channels() { self.one_light_mixed(cosines) } else { self.tint(self.reflectance.level(cosines)) }
     }
@@ -181,7 +181,7 @@ impl<'a, C: Pixel> MaterialTables<'a, C> {
     }
 
     /// The colour of a level, Q9.7, of a material of one channel, as its tables hold it for even rows and for odd ones.
-    #[inline(always)]
+    #[inline]
     pub fn tint(&self, level: i32) -> [C::Stored; 2] {
         let ([even, odd], level) = (self.ramps.squares(), Reflectance::biased(level) << (WALK - LEVEL));
         [C::entry(even, level, WALK), C::entry(odd, level, WALK)]

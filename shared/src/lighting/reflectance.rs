@@ -384,7 +384,7 @@ impl Reflectance {
     }
 
     /// The parts of ambient light alone.
-    #[inline(always)]
+    #[inline]
     fn unlit_parts(&self) -> Parts {
         Parts { diffuse: self.ambient, specular: [0; 3] }
     }
@@ -675,7 +675,7 @@ fn diffuse_level([ambient, diffuse]: [i32; 2], cosine: i32) -> i32 {
 
 impl Parts {
     /// Adds what a light with these gains adds, from N·L (Q2.30) and a highlight (unsigned Q0.16). All lights together have 20 bits.
-    #[inline(always)]
+    #[inline]
     fn add(&mut self, gains: &Gains, towards: i32, highlight: u32) {
         if towards > 0 {
             let cosine = towards as u32 >> (COSINE - 15);

@@ -55,7 +55,7 @@ impl<'f> Sampler<'f> {
     }
 
     /// The colour of the texel at a place, which is rounded down to whole texels.
-    #[inline(always)]
+    #[inline]
     pub(crate) fn texel(&self, [u, v]: [u32; 2]) -> Colour {
         let [[right, columns], [down, rows]] = self.digits;
         let texel = (u >> (right & 31) & columns | v >> (down & 31) & rows) as usize;

@@ -148,7 +148,7 @@ pub(crate) struct CoarseNearness {
 
 impl CoarseNearness {
     /// The strength of a light without a cone at the squared distance `square`, unsigned Q0.32; Q2.30. Error: 2^-14 of full light.
-    #[inline(always)]
+    #[inline]
     pub(crate) fn strength(self, square: u32) -> i32 {
         const ONE: i32 = 1 << 15;
         let part = ((unsigned_product(square, self.mantissa) >> 32) as u32) >> self.shift;
@@ -172,7 +172,7 @@ const STEEPEST: u32 = 64 << SLOPE;
 impl CoarseShape {
     /// The strength of the light at the squared distance `square`, unsigned Q0.32, where `cosine` gives the cosine to the axis of the cone, Q2.30; Q2.30.
     /// Error: 2^-13 of full light.
-    #[inline(always)]
+    #[inline]
     pub(crate) fn strength(&self, square: u32, cosine: impl FnOnce() -> i32) -> i32 {
         let near = self.nearness.strength(square);
         if self.slope == 0 {

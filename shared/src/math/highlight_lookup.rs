@@ -35,7 +35,7 @@ impl<'a> QuotientLookup<'a> {
     }
 
     /// What a kernel needs for this lookup. It reads reciprocal lengths from `roots`.
-    #[inline(always)]
+    #[inline]
     pub(crate) fn in_kernels(&self, roots: &'a HalfRsqrt) -> Lookup<'a> {
         const { assert!(STEP == 8) };
         Lookup { roots: roots.knots(), highlights: Some(self.table), top: self.top }

@@ -166,7 +166,7 @@ pub struct Root {
 
 impl Root {
     /// The reciprocal root of `x` in Q2.30, (0, 2].
-    #[inline(always)]
+    #[inline]
     pub fn of(x: u32) -> Self {
         let shift = x.max(1).leading_zeros() & !1;
         // x = m 2^-shift, m in [1, 4): the root's exponent is half of it.
@@ -175,7 +175,7 @@ impl Root {
 
     /// Computes `value / sqrt(x)`, Q2.30 each, saturating at 2. Error: the root's, and less than 2/sqrt(x) units of the last place, because the
     /// quotient is rounded down before it is shifted.
-    #[inline(always)]
+    #[inline]
     pub fn divide(self, value: i32) -> i32 {
         let quotient = (product(value, self.mantissa as i32) >> 30) as i32;
         let shifted = quotient.wrapping_shl(self.shift);

@@ -30,7 +30,7 @@ pub fn narrow_dot([a0, a1, a2]: [i32; 3], [b0, b1, b2]: [i32; 3]) -> i32 {
 }
 
 /// Applies `f` to each component. It is written out, because `map` of an array is a loop through memory at opt-level "s".
-#[inline(always)]
+#[inline]
 pub fn map<A, R>([a0, a1, a2]: [A; 3], f: impl Fn(A) -> R) -> [R; 3] {
     [f(a0), f(a1), f(a2)]
 }
@@ -38,7 +38,7 @@ pub fn map<A, R>([a0, a1, a2]: [A; 3], f: impl Fn(A) -> R) -> [R; 3] {
 /// Applies `f` to each pair of components.
 ///
 /// The components are written out, so that no index is checked.
-#[inline(always)]
+#[inline]
 pub fn zip<A, B, R>([a0, a1, a2]: [A; 3], [b0, b1, b2]: [B; 3], f: impl Fn(A, B) -> R) -> [R; 3] {
     [f(a0, b0), f(a1, b1), f(a2, b2)]
 }

@@ -73,7 +73,7 @@ const MOST: u32 = 2;
 
 impl TriangleSetup<'_> {
     /// Whether the triangle has a texture.
-    #[inline(always)]
+    #[inline]
     pub(crate) fn has_texture(&self) -> bool {
         TEXTURES && self.texture.first().is_some_and(Option::is_some)
     }
@@ -266,7 +266,7 @@ impl<const N: usize, const CH: usize> Light<N, CH> {
     }
 
     /// Draws a triangle by the texels of `place` and by polynomials that `fit` makes of light, without highlights if none reaches it.
-    #[inline(always)]
+    #[inline]
     fn fill<C: Pixel, T, L>(
         &self,
         setup: &TriangleSetup<'_>,
@@ -441,21 +441,21 @@ impl<C: Pixel> Texels<C> {
     }
 
     /// The levels that [`scaled`] quarters of light leave on a texel.
-    #[inline(always)]
+    #[inline]
     fn reflected([r, g, b]: [u32; 3], Colour { channels: [red, green, blue], .. }: Colour) -> [i32; 3] {
         // Q8.16 times eight bits, of which a quarter is a whole level with CHANNEL fraction bits. It is between -512 and 512.
         let reflect = |quarter: u32, channel: u8| (quarter as i32 >> (CHANNEL - 16)).wrapping_mul(channel.into());
         [reflect(r, red), reflect(g, green), reflect(b, blue)]
     }
 
-    #[inline(always)]
+    #[inline]
     fn colour(&self, levels: [i32; 3]) -> C {
         C::mixed(zip(levels, self.rounding.now(), i32::wrapping_add))
     }
 }
 
 impl<C: Pixel> ByRows for Texels<C> {
-    #[inline(always)]
+    #[inline]
     fn step_row(&mut self) {
         self.rounding.step_row();
     }
@@ -464,7 +464,7 @@ impl<C: Pixel> ByRows for Texels<C> {
 impl<C: Pixel> PixelShader<(Colour, [u32; 3])> for Texels<C> {
     type Pixel = C;
 
-    #[inline(always)]
+    #[inline]
     fn shade(&self, (texel, light): (Colour, [u32; 3])) -> C {
         self.colour(Self::reflected(light, texel))
     }
@@ -473,7 +473,7 @@ impl<C: Pixel> PixelShader<(Colour, [u32; 3])> for Texels<C> {
 impl<C: Pixel> PixelShader<(Colour, ([u32; 3], [u32; 3]))> for Texels<C> {
     type Pixel = C;
 
-    #[inline(always)]
+    #[inline]
     fn shade(&self, (texel, (light, highlights)): (Colour, ([u32; 3], [u32; 3]))) -> C {
         self.colour(zip(Self::reflected(light, texel), highlights, |level, highlight| level.wrapping_add(highlight as i32)))
     }
@@ -495,14 +495,14 @@ impl<C: Pixel> NeutralTexels<C> {
     }
 
     /// A level of red and blue by that of green. They are as 248 to 252 if green has 6 bits and they have 5: this is off by 2^-12.
-    #[inline(always)]
+    #[inline]
     fn outer(level: i32) -> i32 {
         let [red, green, _] = C::LEVELS;
         if red == green { level } else { level.wrapping_sub(level >> 6) }
     }
 
     /// The colour where a texel reflects this much light, as [`scaled`] quarters, and where these levels of highlights are added.
-    #[inline(always)]
+    #[inline]
     fn colour(&self, quarter: u32, highlight: u32, Colour { channels: [red, green, blue], .. }: Colour) -> C {
         let (more, more_green) = self.rounding.now();
         let (quarter, highlight) = (quarter as i32 >> (CHANNEL - 16), highlight as i32);
@@ -513,7 +513,7 @@ impl<C: Pixel> NeutralTexels<C> {
 }
 
 impl<C: Pixel> ByRows for NeutralTexels<C> {
-    #[inline(always)]
+    #[inline]
     fn step_row(&mut self) {
         self.rounding.step_row();
     }
@@ -522,7 +522,7 @@ impl<C: Pixel> ByRows for NeutralTexels<C> {
 impl<C: Pixel> PixelShader<(Colour, [u32; 1])> for NeutralTexels<C> {
     type Pixel = C;
 
-    #[inline(always)]
+    #[inline]
     fn shade(&self, (texel, [light]): (Colour, [u32; 1])) -> C {
         self.colour(light, 0, texel)
     }
@@ -531,7 +531,7 @@ impl<C: Pixel> PixelShader<(Colour, [u32; 1])> for NeutralTexels<C> {
 impl<C: Pixel> PixelShader<(Colour, ([u32; 1], [u32; 1]))> for NeutralTexels<C> {
     type Pixel = C;
 
-    #[inline(always)]
+    #[inline]
     fn shade(&self, (texel, ([light], [highlight])): (Colour, ([u32; 1], [u32; 1]))) -> C {
         self.colour(light, highlight, texel)
     }
@@ -546,7 +546,7 @@ impl<C: Pixel> GrayTexels<'_, C> {
     const EXISTS: bool = !C::Ramps::CHECKERED;
 
     /// The grey where a texel reflects this much light, as [`scaled`] quarters, and where these levels of highlights are added.
-    #[inline(always)]
+    #[inline]
     fn gray(&self, quarter: u32, highlight: u32, Colour { channels: [red, green, blue], .. }: Colour) -> C {
         // As by `Albedo::new`.
         let luma = 77 * u32::from(red) + 150 * u32::from(green) + 29 * u32::from(blue);
@@ -561,7 +561,7 @@ impl<C: Pixel> ByRows for GrayTexels<'_, C> {}
 impl<C: Pixel> PixelShader<(Colour, [u32; 1])> for GrayTexels<'_, C> {
     type Pixel = C;
 
-    #[inline(always)]
+    #[inline]
     fn shade(&self, (texel, [light]): (Colour, [u32; 1])) -> C {
         self.gray(light, 0, texel)
     }
@@ -570,7 +570,7 @@ impl<C: Pixel> PixelShader<(Colour, [u32; 1])> for GrayTexels<'_, C> {
 impl<C: Pixel> PixelShader<(Colour, ([u32; 1], [u32; 1]))> for GrayTexels<'_, C> {
     type Pixel = C;
 
-    #[inline(always)]
+    #[inline]
     fn shade(&self, (texel, ([light], [highlight])): (Colour, ([u32; 1], [u32; 1]))) -> C {
         self.gray(light, highlight, texel)
     }
@@ -591,12 +591,12 @@ pub trait AtPlace {
 impl AtPlace for [u32; 2] {
     type Texel = Colour;
 
-    #[inline(always)]
+    #[inline]
     fn texel(self, sampler: &Sampler<'_>) -> Colour {
         sampler.texel(self)
     }
 
-    #[inline(always)]
+    #[inline]
     fn colour(texel: &Colour) -> Colour {
         *texel
     }
@@ -605,13 +605,13 @@ impl AtPlace for [u32; 2] {
 impl<V> AtPlace for ([u32; 2], V) {
     type Texel = (Colour, V);
 
-    #[inline(always)]
+    #[inline]
     fn texel(self, sampler: &Sampler<'_>) -> (Colour, V) {
         let (place, light) = self;
         (place.texel(sampler), light)
     }
 
-    #[inline(always)]
+    #[inline]
     fn colour((texel, _): &(Colour, V)) -> Colour {
         *texel
     }
@@ -634,7 +634,7 @@ impl<'f, P: Patch<Walker: Walker<Value: AtPlace>>> Patch for Placed<'f, P> {
         self.place.jump(rows);
     }
 
-    #[inline(always)]
+    #[inline]
     fn step_row(&mut self) {
         self.place.step_row();
     }
@@ -648,7 +648,7 @@ impl<'f, P: Patch<Walker: Walker<Value: AtPlace>>> Patch for Placed<'f, P> {
 impl<W: Walker<Value: AtPlace>> Walker for Placed<'_, W> {
     type Value = <W::Value as AtPlace>::Texel;
 
-    #[inline(always)]
+    #[inline]
     fn step(&mut self) {
         self.place.step();
     }
@@ -660,12 +660,12 @@ impl<W: Walker<Value: AtPlace>> Walker for Placed<'_, W> {
 
     const HAS_HOLES: bool = TRANSPARENCY;
 
-    #[inline(always)]
+    #[inline]
     fn may_have_holes(&self) -> bool {
         TRANSPARENCY && self.sampler.has_holes
     }
 
-    #[inline(always)]
+    #[inline]
     fn covers(texel: &Self::Value) -> bool {
         !TRANSPARENCY || W::Value::colour(texel).hole == 0
     }
@@ -699,7 +699,7 @@ impl Patch for PlacePatch {
 impl Walker for PlaceWalker {
     type Value = [u32; 2];
 
-    #[inline(always)]
+    #[inline]
     fn step(&mut self) {
         match self {
             Self::OnScreen(walker) => walker.step(),

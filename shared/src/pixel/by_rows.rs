@@ -10,11 +10,11 @@ pub trait ByRows: Copy {
     fn step_row(&mut self) {}
 
     /// Takes back the last step of another copy, as far as copies share what is stepped.
-    #[inline(always)]
+    #[inline]
     fn take_back(&self) {}
 
     /// Moves down from the first row of the picture to `row`.
-    #[inline(always)]
+    #[inline]
     fn start_at(&mut self, row: i32) {
         if row & 1 != 0 {
             self.step_row();
@@ -37,7 +37,7 @@ impl<T: Copy, C> ByTurns<T, C> {
     }
 
     /// The value for the current row.
-    #[inline(always)]
+    #[inline]
     pub fn now(&self) -> T {
         self.values[0]
     }
@@ -54,7 +54,7 @@ impl<T: Copy, C> ByTurns<T, C> {
 }
 
 impl<T: Copy, C: Pixel> ByRows for ByTurns<T, C> {
-    #[inline(always)]
+    #[inline]
     fn step_row(&mut self) {
         if C::Ramps::CHECKERED {
             let [now, next] = self.values;

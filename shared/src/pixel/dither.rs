@@ -32,7 +32,7 @@ pub const HALF: u32 = 64;
 pub const SQUARES: [u32; 2] = [HALF / 2, HALF / 2 + HALF];
 
 /// Channels of `depth` bits from channels in unsigned Q8.8 that are scaled to that depth, with a [`threshold`] in place of rounding.
-#[inline(always)]
+#[inline]
 #[must_use]
 pub fn quantise(channels: [u32; 3], depth: [u32; 3], threshold: u32) -> [u8; 3] {
     let mut out = [0; 3];

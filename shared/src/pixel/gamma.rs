@@ -78,7 +78,7 @@ impl Gamma {
     }
 
     /// The table of channels of light for a display of `depth` bits: what to send, see [`Self::curved`].
-    #[inline(always)]
+    #[inline]
     pub(super) const fn light(&self, depth: u32) -> &[u8; LIGHT] {
         let [two, three, five, six, eight] = &self.light;
         match depth {

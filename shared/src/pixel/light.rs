@@ -85,7 +85,7 @@ impl<const R: u32, const G: u32, const B: u32> Light<R, G, B> {
     }
 
     /// The channels as the display shows them, after a threshold was added.
-    #[inline(always)]
+    #[inline]
     const fn upper(word: u32) -> [u32; 3] {
         let [r, g, b] = Self(word).fine();
         [r >> Self::BELOW[0], g >> Self::BELOW[1], b >> Self::BELOW[2]]
@@ -97,7 +97,7 @@ impl<const R: u32, const G: u32, const B: u32> Light<R, G, B> {
     }
 
     /// The pixel corrected by the curve of a display.
-    #[inline(always)]
+    #[inline]
     fn curved(self, gamma: &Gamma) -> Self {
         if self.0 & IS_FINAL != 0 {
             return self;
@@ -108,7 +108,7 @@ impl<const R: u32, const G: u32, const B: u32> Light<R, G, B> {
     }
 
     /// The pixel of levels of 1/255 with `fraction` fraction bits, which include half a level.
-    #[inline(always)]
+    #[inline]
     fn of_levels([r, g, b]: [i32; 3], fraction: u32) -> Self {
         let channel = |level: i32| (level >> (fraction + 8 - BITS)).clamp(0, MAX as i32) as u32;
         Self::scaled_to_display([channel(r), channel(g), channel(b)])
@@ -163,13 +163,13 @@ impl<const R: u32, const G: u32, const B: u32> Pixel for Light<R, G, B> {
         Self::of_levels(channels.map(|channel| channel as i32 + (1 << 7)), 8).0
     }
 
-    #[inline(always)]
+    #[inline]
     fn quantised(intensity: Intensity, _: u32) -> Self {
         let [r, g, b] = intensity;
         Self::of_levels([r + (1 << 7), g + (1 << 7), b + (1 << 7)], 8)
     }
 
-    #[inline(always)]
+    #[inline]
     fn mixed([r, g, b]: [i32; 3]) -> Self {
         // Where clamping takes several instructions, all channels are asked at once whether one needs it.
         if !SATURATES && ((r | g | b) as u32) < 256 << CHANNEL {
@@ -237,7 +237,7 @@ impl<const DEPTH: u32> LightGray<DEPTH> {
     }
 
     /// Eight greys as the display shows them, packed into the first `DEPTH` bytes. Thresholds of four greys are the bytes of a word.
-    #[inline(always)]
+    #[inline]
     fn packed([a, b, c, d, e, f, g, h]: &[Self; 8], [left, right]: [u32; 2]) -> [u8; 4] {
         let four = |greys: [u8; 4], thresholds: u32| {
             // No sum of a grey and its threshold reaches into the next byte.
@@ -432,7 +432,7 @@ impl Output {
         }
     }
 
-    #[inline(always)]
+    #[inline]
     fn convert_by<C: Pixel, F: FromDrawn<C>>(self, band: &[C], area: Rectangle, pixels: &mut [F], curve: impl Fn(C) -> C) {
         let width = (area.size.width as usize).max(1);
         let rows = band.chunks_exact(width).zip(pixels.chunks_exact_mut(width)).take(area.size.height as usize);

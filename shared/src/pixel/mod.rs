@@ -153,7 +153,7 @@ pub trait Pixel: PixelFormat {
 
     /// Looks up a walked level in tables of colours, see [`Ramps::walked`].
     #[doc(hidden)]
-    #[inline(always)]
+    #[inline]
     fn walked(ramps: &Self::Ramps, level: u32) -> Self::Stored {
         if Self::Ramps::CHECKERED {
             ramps.walked(level)
@@ -172,7 +172,7 @@ pub trait Pixel: PixelFormat {
 
     /// The colour of three intensities, by a [`dither::threshold`].
     #[doc(hidden)]
-    #[inline(always)]
+    #[inline]
     fn quantised(intensity: Intensity, threshold: u32) -> Self {
         // A step of a channel is 2^(16 - depth), of which thresholds are 1/128. Armv7-M shifts and clamps by one instruction.
         let more = |depth: u32| (threshold as i32) << (9 - depth);
@@ -183,7 +183,7 @@ pub trait Pixel: PixelFormat {
 
     /// The colour of three levels with [`CHANNEL`] fraction bits. Half a step for rounding, or the dither, has been added to each.
     #[doc(hidden)]
-    #[inline(always)]
+    #[inline]
     fn mixed([r, g, b]: [i32; 3]) -> Self {
         let shifted = |level: i32, depth: u32| level >> (CHANNEL + 8 - depth);
         let [dr, dg, db] = Self::DEPTH;
@@ -202,42 +202,42 @@ pub trait Pixel: PixelFormat {
 
     /// The pixels as kernels store them.
     #[doc(hidden)]
-    #[inline(always)]
+    #[inline]
     fn halfwords(_: &mut [Self]) -> Option<&mut [u16]> {
         None
     }
 
     /// Two entries of a table as a kernel stores them.
     #[doc(hidden)]
-    #[inline(always)]
+    #[inline]
     fn halves(_: [Self::Stored; 2]) -> Option<[u16; 2]> {
         None
     }
 
     /// Tables of colours as a kernel reads them.
     #[doc(hidden)]
-    #[inline(always)]
+    #[inline]
     fn table(_: &Self::Ramps) -> Option<&kernels::Table> {
         None
     }
 
     /// A table of colours as a kernel reads it.
     #[doc(hidden)]
-    #[inline(always)]
+    #[inline]
     fn ramp(_: &[Self::Stored; RAMP]) -> Option<&[u16; RAMP]> {
         None
     }
 
     /// The kernel that computes light at each pixel, see [`kernels::Lit::new`].
     #[doc(hidden)]
-    #[inline(always)]
+    #[inline]
     fn lit<'a>(_: kernels::Colours<'a>, _highlights: usize, _: kernels::Lookup<'a>) -> Option<kernels::Lit<'a>> {
         None
     }
 
     /// Fills rows by three levels with [`CHANNEL`] fraction bits, see [`kernels::channels`].
     #[doc(hidden)]
-    #[inline(always)]
+    #[inline]
     fn fill_channels(_: kernels::Rows<'_>, _: &mut kernels::Plane, _: &mut [kernels::Plane; 3], _: i32) -> Option<u32> {
         None
     }
@@ -287,7 +287,7 @@ fn rgb565([high, middle, low]: [u32; 3]) -> u16 {
 const GREEN: u16 = 0x3F << 5;
 
 /// Two numbers with the bits of `mask` of the other.
-#[inline(always)]
+#[inline]
 fn exchanged([a, b]: [u16; 2], mask: u16) -> [u16; 2] {
     let differing = (a ^ b) & mask;
     [a ^ differing, b ^ differing]
@@ -306,7 +306,7 @@ fn mixed_rgb565(own: u16, other: u16, share: u32) -> u16 {
 }
 
 /// Both halves of a word, each of them `half`; the compiler must not know that they are the same.
-#[inline(always)]
+#[inline]
 fn halves(half: u16) -> [u16; 2] {
     let word = black_box(u32::from(half) * 0x1_0001);
     [word as u16, (word >> 16) as u16]
@@ -348,12 +348,12 @@ macro_rules! rgb565 {
                 RawU16::new(stored).into()
             }
 
-            #[inline(always)]
+            #[inline]
             fn greens_exchanged(colours: [u16; 2]) -> [u16; 2] {
                 exchanged(colours, GREEN)
             }
 
-            #[inline(always)]
+            #[inline]
             fn pair(self) -> [Self; 2] {
                 let [even, odd] = halves(self.stored());
                 [Self::from_stored(even), Self::from_stored(odd)]
@@ -366,32 +366,32 @@ macro_rules! rgb565 {
 
             const HAS_KERNELS: bool = true;
 
-            #[inline(always)]
+            #[inline]
             fn halfwords(pixels: &mut [Self]) -> Option<&mut [u16]> {
                 Some(kernels::halfwords(pixels))
             }
 
-            #[inline(always)]
+            #[inline]
             fn halves(stored: [u16; 2]) -> Option<[u16; 2]> {
                 Some(stored)
             }
 
-            #[inline(always)]
+            #[inline]
             fn table(ramps: &InTurn<u16>) -> Option<&kernels::Table> {
                 Some(transmute_ref!(ramps))
             }
 
-            #[inline(always)]
+            #[inline]
             fn ramp(ramp: &[u16; RAMP]) -> Option<&[u16; RAMP]> {
                 Some(ramp)
             }
 
-            #[inline(always)]
+            #[inline]
             fn lit<'a>(colours: kernels::Colours<'a>, highlights: usize, lookup: kernels::Lookup<'a>) -> Option<kernels::Lit<'a>> {
                 kernels::Lit::new::<{ $order as u8 }>(colours, highlights, lookup)
             }
 
-            #[inline(always)]
+            #[inline]
             fn fill_channels(
                 rows: kernels::Rows<'_>,
                 depth: &mut kernels::Plane,
@@ -560,13 +560,13 @@ impl Pixel for Rgb565Be {
         stored
     }
 
-    #[inline(always)]
+    #[inline]
     fn greens_exchanged([even, odd]: [Self; 2]) -> [Self; 2] {
         let [even, odd] = exchanged([even.0, odd.0], GREEN.to_be());
         [Self(even), Self(odd)]
     }
 
-    #[inline(always)]
+    #[inline]
     fn pair(self) -> [Self; 2] {
         let [even, odd] = halves(self.0);
         [Self(even), Self(odd)]
@@ -579,32 +579,32 @@ impl Pixel for Rgb565Be {
 
     const HAS_KERNELS: bool = true;
 
-    #[inline(always)]
+    #[inline]
     fn halfwords(pixels: &mut [Self]) -> Option<&mut [u16]> {
         <[u16]>::mut_from_bytes(pixels.as_mut_bytes()).ok()
     }
 
-    #[inline(always)]
+    #[inline]
     fn halves([first, second]: [Self; 2]) -> Option<[u16; 2]> {
         Some([first.0, second.0])
     }
 
-    #[inline(always)]
+    #[inline]
     fn table(ramps: &InTurn<Self>) -> Option<&kernels::Table> {
         Some(transmute_ref!(ramps))
     }
 
-    #[inline(always)]
+    #[inline]
     fn ramp(ramp: &[Self; RAMP]) -> Option<&[u16; RAMP]> {
         Some(transmute_ref!(ramp))
     }
 
-    #[inline(always)]
+    #[inline]
     fn lit<'a>(colours: kernels::Colours<'a>, highlights: usize, lookup: kernels::Lookup<'a>) -> Option<kernels::Lit<'a>> {
         kernels::Lit::new::<{ kernels::Format::Swapped as u8 }>(colours, highlights, lookup)
     }
 
-    #[inline(always)]
+    #[inline]
     fn fill_channels(rows: kernels::Rows<'_>, depth: &mut kernels::Plane, levels: &mut [kernels::Plane; 3], raise: i32) -> Option<u32> {
         kernels::channels::<{ kernels::Format::Swapped as u8 }>(rows, depth, levels, raise)
     }

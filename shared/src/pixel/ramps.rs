@@ -43,13 +43,13 @@ impl<T: Copy + Debug + FromBytes + IntoBytes + Immutable + KnownLayout + Sync> R
     const CHECKERED: bool = false;
     const BITS: u32 = WALK;
 
-    #[inline(always)]
+    #[inline]
     fn squares(&self) -> [&[T; RAMP]; 2] {
         let [rounded] = self;
         [rounded; 2]
     }
 
-    #[inline(always)]
+    #[inline]
     fn walked(&self, level: u32) -> T {
         let [rounded] = self;
         rounded[(level >> Self::BITS) as usize % RAMP]
@@ -65,7 +65,7 @@ impl<T: Copy + Debug + FromBytes + IntoBytes + Immutable + KnownLayout + Sync> R
     const CHECKERED: bool = true;
     const BITS: u32 = WALK - 1;
 
-    #[inline(always)]
+    #[inline]
     fn squares(&self) -> [&[T; RAMP]; 2] {
         let [first, second] = self;
         [first, second]

@@ -29,7 +29,7 @@ impl LeftRight {
     pub(crate) const NONE: Self = Self { left: EdgeX::NONE, right: EdgeX::NONE };
 
     /// Moves down `rows` rows.
-    #[inline(always)]
+    #[inline]
     pub(crate) fn skip(&mut self, rows: i32) {
         self.left.skip(rows);
         self.right.skip(rows);
@@ -76,7 +76,7 @@ impl EdgeState {
     pub(crate) const NONE: Self = Self { pair: LeftRight::NONE, column: EdgeX::NONE, turn: 0, low: 0, right: 0, shader: 0, unused: 0 };
 
     /// The edges in the rows from `top` to `bottom` of the next band.
-    #[inline(always)]
+    #[inline]
     pub(crate) fn walker(self, [top, bottom]: [i32; 2]) -> EdgeWalker {
         let Self { pair, column, turn, low, right, .. } = self;
         let end = low.min(bottom);
@@ -155,7 +155,7 @@ impl EdgeWalker {
     }
 
     /// The state for the next band; `pair` has been stepped to the end. `shader` is the [`crate::raster::pixel_shader::PixelShader::ID`].
-    #[inline(always)]
+    #[inline]
     pub(crate) fn state(&self, pair: LeftRight, shader: u8) -> EdgeState {
         // If the band ends at or above the middle corner, the lower edge is still to come.
         let turn = if self.stop < self.end { self.low } else { self.turn };
@@ -166,7 +166,7 @@ impl EdgeWalker {
     }
 
     /// The rows below the middle corner of edges that are stepped from end to end, for a kernel.
-    #[inline(always)]
+    #[inline]
     pub(crate) fn below(&self) -> Option<Turn> {
         let Then::Lower(LowerEdge { column: EdgeX { x, step }, right }) = self.then else { return None };
         Some(Turn { height: self.end.wrapping_sub(self.stop) as u32, is_right: right, line: [x, step] })
@@ -174,7 +174,7 @@ impl EdgeWalker {
 
     /// Continues below the middle corner, to which `pair` has been stepped; returns one past the last row to which it can be stepped now. `None` if edges
     /// are computed again there, by [`Self::anew`].
-    #[inline(always)]
+    #[inline]
     pub(crate) fn next(&self, pair: &mut LeftRight) -> Option<i32> {
         let Then::Lower(LowerEdge { column, right }) = self.then else { return None };
         *(if right { &mut pair.right } else { &mut pair.left }) = column;
@@ -215,14 +215,14 @@ impl EdgeWalker {
 }
 
 /// Whether no corner lies beside these columns.
-#[inline(always)]
+#[inline]
 fn is_walkable([[a, _], [b, _], [c, _]]: [[i32; 2]; 3], [first, end]: [i32; 2]) -> bool {
     let inside = |x: i32| (x.wrapping_sub(first << SUBPIXEL) as u32) < (end.wrapping_sub(first) as u32) << SUBPIXEL;
     inside(a) && inside(b) && inside(c)
 }
 
 /// Whether the width of every edge fits one word.
-#[inline(always)]
+#[inline]
 fn is_steppable([[a, _], [b, _], [c, _]]: [[i32; 2]; 3]) -> bool {
     let narrow = |from: i32, to: i32| (to.wrapping_sub(from).wrapping_add(MAX_STEPPED_WIDTH) as u32) <= 2 * MAX_STEPPED_WIDTH as u32;
     narrow(a, b) && narrow(b, c) && narrow(c, a)

@@ -99,7 +99,7 @@ impl Gradients {
 
     /// The gradients of a word-sized triangle; `None` for any other. A triangle is word-sized if it is at most 64 pixels wide and high, and
     /// far from [`MAX_THINNESS`].
-    #[inline(always)]
+    #[inline]
     pub fn if_word_sized(corners: [[i32; 2]; 3]) -> Option<Self> {
         let (_, edges) = edges(corners);
         Some(Self::from_area(corners, WordSized::new(edges)?, Steepness::NONE))
@@ -121,7 +121,7 @@ impl Gradients {
         Self::from_area(corners, WordSized::of(edges), steepness)
     }
 
-    #[inline(always)]
+    #[inline]
     fn from_area(corners: [[i32; 2]; 3], area: WordSized, steepness: Steepness) -> Self {
         let ([x0, y0], edges) = edges(corners);
         let anchor = [x0 >> SUBPIXEL, (y0 + CENTRE - 1) >> SUBPIXEL];
@@ -246,7 +246,7 @@ impl Gradients {
     }
 
     /// Gradients of s and t.
-    #[inline(always)]
+    #[inline]
     pub fn slopes(&self) -> Slopes {
         match self.precision {
             Precision::WordSized(area) => Self::mantissas(self.edges, area),
@@ -344,14 +344,14 @@ impl Gradients {
     }
 
     /// The coefficients `[c, dx, dy]` of the linear field through the corners' values, at the pixel of corner 0, with `GUARD` more bits than walked.
-    #[inline(always)]
+    #[inline]
     fn plane(&self, nodes: [i32; 3], extra: u32) -> [i64; 3] {
         let (c, dx, dy) = self.derivatives(nodes[0], nodes[1].wrapping_sub(nodes[0]), nodes[2].wrapping_sub(nodes[0]), extra);
         [c.wrapping_add(along(dx, self.offset[0])).wrapping_add(along(dy, self.offset[1])), dx, dy]
     }
 
     /// Value at corner 0 and derivatives along x and y of `c0 + c1 s + c2 t`, with `GUARD` more bits than walked.
-    #[inline(always)]
+    #[inline]
     fn derivatives(&self, c0: i32, c1: i32, c2: i32, extra: u32) -> (i64, i64, i64) {
         let Slopes { s, t, exponent } = self.slopes();
         let bits = exponent - extra as i32 - GUARD;
@@ -469,7 +469,7 @@ impl Gradients {
     }
 
     /// Length over height, rounded up, where length is measured as in [`Self::is_thinner_than`].
-    #[inline(always)]
+    #[inline]
     fn thinness(&self) -> u32 {
         match self.precision {
             Precision::WordSized(area) => area.thinness(self.edges),
@@ -553,7 +553,7 @@ pub(super) fn thinness(edges: [[i32; 2]; 2]) -> u32 {
 }
 
 /// The square of the longest side by columns or rows from corner 0, and twice the area.
-#[inline(always)]
+#[inline]
 fn square_and_area(edges: [[i32; 2]; 2]) -> [i64; 2] {
     let [[x1, y1], [x2, y2]] = edges.map(|edge| edge.map(i64::from));
     let extent = x1.abs().max(y1.abs()).max(x2.abs()).max(y2.abs());
@@ -568,13 +568,13 @@ struct Mantissas {
 
 impl Mantissas {
     /// Gradients, and s and t at the anchor; `offset` leads there from corner 0.
-    #[inline(always)]
+    #[inline]
     fn new(gradients: Slopes, offset: [i32; 2]) -> Self {
         Self { at: [at(gradients.s, offset), at(gradients.t, offset)], gradients }
     }
 
     /// The value of `a s + b t` at the anchor, and its derivatives along x and y; `a` and `b` are at most 2^30.
-    #[inline(always)]
+    #[inline]
     fn products(&self, a: i32, b: i32) -> [i64; 3] {
         let Slopes { s, t, .. } = self.gradients;
         let along = |s: i32, t: i32| product(a, s) + product(b, t);

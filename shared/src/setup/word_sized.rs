@@ -44,7 +44,7 @@ pub(crate) struct WordSized {
 
 impl WordSized {
     /// The area of a triangle by its edges from corner 0; `None` unless it is word-sized.
-    #[inline(always)]
+    #[inline]
     pub(crate) fn new(edges: [[i32; 2]; 2]) -> Option<Self> {
         let [[x1, y1], [x2, y2]] = edges;
         let spread = |a: i32, b: i32| a.max(b).max(0).wrapping_sub(a.min(b).min(0)) as u32;
@@ -52,7 +52,7 @@ impl WordSized {
     }
 
     /// The area of a triangle that is known to be word-sized.
-    #[inline(always)]
+    #[inline]
     pub(crate) fn of(edges: [[i32; 2]; 2]) -> Self {
         // Negative numbers count one less than their size, so that -2^k has k bits.
         let size = |c: i32| (c ^ (c >> 31)) as u32;
@@ -71,7 +71,7 @@ impl WordSized {
 
     /// `[c, dx, dy]` of the linear field through the corners' values, of at most [`LINEAR`] bits, at `offset` from corner 0
     /// (1/16 pixel), with up to [`EXTRA`] more fraction bits.
-    #[inline(always)]
+    #[inline]
     pub(crate) fn linear(&self, edges: [[i32; 2]; 2], offset: [i32; 2], [i0, i1, i2]: [i32; 3], extra: u32) -> [i32; 3] {
         let [dx, dy] = self.slopes(edges, [i1 - i0, i2 - i0], extra);
         // In 1/16 pixel, corner 0 and the centre of its pixel are whole steps apart, so the move is exact modulo 2^32.
@@ -200,7 +200,7 @@ impl WordSized {
     }
 
     /// Length over height, rounded up.
-    #[inline(always)]
+    #[inline]
     pub(crate) fn thinness(&self, [[x1, y1], [x2, y2]]: [[i32; 2]; 2]) -> u32 {
         let size = |c: i32| c.unsigned_abs();
         let length = size(x1).max(size(y1)).max(size(x2)).max(size(y2));
@@ -209,7 +209,7 @@ impl WordSized {
     }
 
     /// [`Self::slopes`] for differences of at most [`LONG`] + 2 bits, with at least [`LONG_EXTRA`].
-    #[inline(always)]
+    #[inline]
     fn long_slopes(&self, edges: [[i32; 2]; 2], [a, b]: [i32; 2], extra: u32) -> [i32; 2] {
         // Shifted up as far as sums fit a word, since the products are rounded next.
         let most = self.bits + self.zeros + extra - 26;
@@ -221,14 +221,14 @@ impl WordSized {
     }
 
     /// Edges shifted up to all bits of a word but the sign.
-    #[inline(always)]
+    #[inline]
     fn sides(&self, [[x1, y1], [x2, y2]]: [[i32; 2]; 2]) -> [[i32; 2]; 2] {
         let side = |c: i32| c << (31 - self.bits);
         [[side(x1), side(y1)], [side(x2), side(y2)]]
     }
 
     /// Derivatives along x and y of `a s + b t` per 1/16 pixel, with `extra` more fraction bits.
-    #[inline(always)]
+    #[inline]
     fn slopes(&self, [[x1, y1], [x2, y2]]: [[i32; 2]; 2], [a, b]: [i32; 2], extra: u32) -> [i32; 2] {
         // The inverse with as many bits as a shift by less than a word leaves room for.
         let inverse = self.inverse >> (EXTRA - extra);
@@ -238,7 +238,7 @@ impl WordSized {
 }
 
 /// A shift by which all three values stay within 2^30: the largest one, or nearly.
-#[inline(always)]
+#[inline]
 fn room([a, b, c]: [i32; 3]) -> u32 {
     let size = |c: i32| (c ^ (c >> 31)) as u32;
     leading_zeros((size(a) | size(b) | size(c)) >> 8) - 10

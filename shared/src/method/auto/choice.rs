@@ -31,7 +31,7 @@ pub fn choose<const QUADRATICS: bool>(setup: &TriangleSetup<'_>, shading: &Shadi
 }
 
 /// Chooses how to draw a triangle whose [`uniform_parts`] are known.
-#[inline(always)]
+#[inline]
 pub(super) fn choose_lit<const QUADRATICS: bool>(setup: &TriangleSetup<'_>, shading: &Shading<'_>, uniform: Option<&Parts>) -> Choice {
     // Decision: choice of auto.
     // In functions of their own: together they would need more registers than there are.
@@ -112,7 +112,7 @@ fn is_quadratic(setup: &TriangleSetup<'_>, shading: &Shading<'_>, curvature: Cur
 }
 
 /// Approximate numbers of rows and pixels that the triangle covers.
-#[inline(always)]
+#[inline]
 fn extent(setup: &TriangleSetup<'_>) -> [i32; 2] {
     let [a, b, c] = setup.corners;
     // A coarse grid, so that words hold the area.
@@ -129,14 +129,14 @@ pub(super) fn extremes([a, b, c]: [i32; 3]) -> [i32; 2] {
 }
 
 /// Largest difference of a cosine between the corners, where negative cosines count as 0.
-#[inline(always)]
+#[inline]
 fn lit_range(cosines: &[i32; 3]) -> i32 {
     let [dark, bright] = extremes(*cosines);
     bright.max(0) - dark.max(0)
 }
 
 /// Whether the light of all vertices is the same.
-#[inline(always)]
+#[inline]
 pub(super) fn is_uniform(setup: &TriangleSetup<'_>) -> bool {
     let [a, b, c] = setup.corners.map(|corner| corner.light);
     // Number by number: whole arrays are compared by a call.
@@ -334,7 +334,7 @@ fn summed_levels(setup: &TriangleSetup<'_>, shading: &Shading<'_>, uniform: Opti
 }
 
 /// The parts of light where the light of several constant lights is summed, if they are the same all over the triangle and it has no texture.
-#[inline(always)]
+#[inline]
 pub(super) fn uniform_parts(setup: &TriangleSetup<'_>, shading: &Shading<'_>) -> Option<Parts> {
     // For a near viewer highlights differ where normals are the same.
     let is_summed = shading.reflectance.sums_lights() && shading.lighting.is_constant();

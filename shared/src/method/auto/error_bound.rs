@@ -326,7 +326,7 @@ impl ErrorBounds {
     }
 
     /// Adds a highlight of this level, Q9.7, with these N·H at the corners, where it can be seen.
-    #[inline(always)]
+    #[inline]
     pub(crate) fn add_linear_highlight(&self, curvature: Curvature, half: &[i32; 3], specular: u32, bounds: &mut LinearBound) {
         if let Some(place) = self.highlight(curvature, half) {
             let [below, above] = place.linear(specular);

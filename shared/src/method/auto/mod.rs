@@ -63,7 +63,7 @@ static FACTS_WITHOUT_QUADRATICS: Facts = Facts { name: "auto-linear", id: 27, ..
 pub struct Auto<const QUADRATICS: bool>;
 
 /// The mean of the smallest and the largest light number `k` at the corners, where values below `floor` count as `floor`.
-#[inline(always)]
+#[inline]
 fn half_way(setup: &TriangleSetup<'_>, k: usize, floor: i32) -> i32 {
     let [a, b, c] = setup.corners;
     let [least, most] = extremes([a.light[k].max(floor), b.light[k].max(floor), c.light[k].max(floor)]);
@@ -237,7 +237,7 @@ impl<const QUADRATICS: bool> Loops for Auto<QUADRATICS> {
 }
 
 /// Draws by the loops of another method. They are called by address, because the compiler would compile them again here.
-#[inline(always)]
+#[inline]
 fn by<C: Pixel>(
     draw: DrawTriangle<C>,
     setup: &TriangleSetup<'_>,

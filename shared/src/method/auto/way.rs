@@ -63,14 +63,14 @@ impl Choice {
 }
 
 /// Whether a level of the corners may have been clamped at 255.
-#[inline(always)]
+#[inline]
 pub(super) fn is_clamped(levels: &[[i32; 3]; 3]) -> bool {
     levels.as_flattened().iter().any(|&level| level >= FULL)
 }
 
 /// By how much levels are raised so that linear interpolation, whose errors lie in `interval`, keeps to the budget; `None` if it does not in
 /// perspective. Levels at the corners differ by `range`.
-#[inline(always)]
+#[inline]
 pub(super) fn linear_raise(setup: &TriangleSetup<'_>, interval: Interval, budget: u32, range: impl FnOnce() -> u32) -> Option<i32> {
     if !PERSPECTIVE || !setup.perspective {
         return Some(interval.raise(budget));

@@ -28,7 +28,7 @@ pub(super) trait AtPixel<V>: Copy {
     const IS_QUOTIENT: bool = false;
 
     /// Where kernels look up light.
-    #[inline(always)]
+    #[inline]
     fn lookup(&self) -> Option<kernels::Lookup<'_>> {
         None
     }
@@ -103,7 +103,7 @@ impl<V, T: Shades<L>, K: AtPixel<V>, L: FromValues<K::Common, K::Values>> PixelS
             None
         };
 
-    #[inline(always)]
+    #[inline]
     fn lit(&self) -> Option<kernels::Lit<'_>> {
         self.colours.lit(self.at.lookup()?)
     }

@@ -53,7 +53,7 @@ pub(super) fn is_flat(setup: &TriangleSetup<'_>) -> bool {
 }
 
 /// The field |N|² minus [`LEAST`], Q0.32, of normals of unit length at the corners.
-#[inline(always)]
+#[inline]
 pub(super) fn unit_square(setup: &TriangleSetup<'_>) -> Nodes<6, 1, HAVERSINE_BITS> {
     let [ab, bc, ca] = setup.edges(setup.triangle.haversine);
     let nodes = [0, 0, 0, -i32::from(ab), -i32::from(bc), -i32::from(ca)];
@@ -61,7 +61,7 @@ pub(super) fn unit_square(setup: &TriangleSetup<'_>) -> Nodes<6, 1, HAVERSINE_BI
 }
 
 /// Six nodes of |N|² - 1, with [`FIELD_NODE`] fraction bits, where normals are of unit length at the corners. For steep highlights they are exact.
-#[inline(always)]
+#[inline]
 pub(super) fn squares(setup: &TriangleSetup<'_>, is_steep: bool) -> [i32; 6] {
     if is_steep {
         return exact_squares(setup);
@@ -86,7 +86,7 @@ fn exact_squares(setup: &TriangleSetup<'_>) -> [i32; 6] {
 
 impl Lengths {
     /// The lengths for this triangle. `None` if an interpolated normal may leave the table of roots.
-    #[inline(always)]
+    #[inline]
     pub(super) fn of(setup: &TriangleSetup<'_>, is_steep: bool) -> Option<Self> {
         if !is_flat(setup) {
             return None;
@@ -104,7 +104,7 @@ impl Lengths {
     }
 
     /// The cosines of a direction with the normals at the corners, Q2.30, as they are interpolated.
-    #[inline(always)]
+    #[inline]
     pub(super) fn apply(&self, cosines: &[i32; 3]) -> [i32; 3] {
         match self.scaled {
             Some(lengths) if PERSPECTIVE => scaled(lengths, *cosines),

@@ -66,7 +66,7 @@ impl Term {
     }
 
     /// Levels to which the term adds its factors times `value`.
-    #[inline(always)]
+    #[inline]
     fn added(&self, levels: [i32; 3], value: i32) -> [i32; 3] {
         zip(levels, self.factors, |level, factor| level.wrapping_add(factor.wrapping_mul(value)))
     }
@@ -152,7 +152,7 @@ impl SummedLights {
     }
 
     /// Whether kernels can draw them: no light ends on the triangle, and at most two have a highlight there.
-    #[inline(always)]
+    #[inline]
     fn suit_kernels(&self) -> bool {
         self.ending.is_empty() && self.highlights.len() <= 2
     }
@@ -172,7 +172,7 @@ impl SummedLights {
 }
 
 /// Draws `setup`. `NEAR` tells whether a light or the viewer is near. `None` if a highlight or a near light is too steep, or too near.
-#[inline(always)]
+#[inline]
 pub(super) fn draw<C: Pixel, const NEAR: bool>(
     setup: &TriangleSetup<'_>,
     shading: &Shading<'_>,
@@ -387,7 +387,7 @@ impl<C: Pixel, const NEAR: bool> OneByOne<'_, C, NEAR> {
     }
 
     /// These levels with the highlights at a pixel.
-    #[inline(always)]
+    #[inline]
     fn with_highlights(&self, column: i32, levels: [i32; 3], near: [i32; 3], half_reciprocal: &HalfReciprocal) -> [i32; 3] {
         let levels = if NEAR { zip(levels, near, i32::wrapping_add) } else { levels };
         self.lights.highlights.iter().fold(levels, |levels, term| {
@@ -404,12 +404,12 @@ impl<C: Pixel, const NEAR: bool> ByRows for OneByOne<'_, C, NEAR> {
         self.jump(1);
     }
 
-    #[inline(always)]
+    #[inline]
     fn take_back(&self) {
         self.jump(-1);
     }
 
-    #[inline(always)]
+    #[inline]
     fn start_at(&mut self, row: i32) {
         self.colours.start_at(row);
         self.jump(row.wrapping_sub(self.row));
@@ -422,7 +422,7 @@ where
 {
     type Pixel = C;
 
-    #[inline(always)]
+    #[inline]
     fn shade(&self, (column, (sums, [square])): Value<CH>) -> C {
         let half_reciprocal = HalfReciprocal(self.lengths.rsqrt(square) as i32);
         let [levels, near] = self.diffuse(column, sums, &half_reciprocal);
@@ -439,7 +439,7 @@ where
 {
     type Pixel = C;
 
-    #[inline(always)]
+    #[inline]
     fn shade(&self, (column, (colour, (sums, [square]))): ColouredValue<S, CH>) -> C {
         let half_reciprocal = HalfReciprocal(self.lengths.rsqrt(square) as i32);
         let [levels, near] = self.diffuse(column, sums, &half_reciprocal);

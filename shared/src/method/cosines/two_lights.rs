@@ -19,7 +19,7 @@ pub(super) struct TwoLights<'a, C> {
 impl<'a, C: Pixel> TwoLights<'a, C> {
     /// The lights on the triangle `setup`, whose vertices have [`crate::method::VertexLight::Cosines`]; `None` unless there are two, with loops for
     /// them.
-    #[inline(always)]
+    #[inline]
     pub(super) fn on(setup: &TriangleSetup<'_>, tables: MaterialTables<'a, C>) -> Option<Self> {
         let [forth, back] = tables.two_lights_rgb()?;
         let [one, two] = setup.corners_of_two_lights();

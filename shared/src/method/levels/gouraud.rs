@@ -109,7 +109,7 @@ pub(crate) fn draw_one<C: Pixel>(setup: &TriangleSetup<'_>, raise: i32, tables: 
 }
 
 /// Whether a triangle of three channels under one constant light is a ramp of the table of colours: no corner has a highlight.
-#[inline(always)]
+#[inline]
 pub(crate) fn has_ramp(setup: &TriangleSetup<'_>, reflectance: &Reflectance) -> bool {
     let [a, b, c] = setup.corners;
     a.light[2] | b.light[2] | c.light[2] == 0 && reflectance.has_ramp()
@@ -160,7 +160,7 @@ fn draw_tinted<C: Pixel>(setup: &TriangleSetup<'_>, nodes: [i32; 3], tint: Tint<
 impl<C: Pixel> PixelShader<[u32; 1]> for Tint<C> {
     type Pixel = C;
 
-    #[inline(always)]
+    #[inline]
     fn shade(&self, [level]: [u32; 1]) -> C {
         self.lit(level)
     }

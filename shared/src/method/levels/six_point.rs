@@ -79,7 +79,7 @@ fn draw_rgb<C: Pixel>(setup: &TriangleSetup<'_>, shading: &Shading<'_>, band: &m
 }
 
 /// N·L (Q2.30) and the highlight (unsigned Q0.16) of one constant light at the six nodes.
-#[inline(always)]
+#[inline]
 fn reflected(setup: &TriangleSetup<'_>, shading: &Shading<'_>) -> ([i32; 6], [u32; 6]) {
     let light = setup.six_diffuse();
     if setup.has_no_highlight(&shading.reflectance) {
@@ -134,7 +134,7 @@ fn one_level(setup: &TriangleSetup<'_>, shading: &Shading<'_>) -> [i32; 6] {
 }
 
 /// Node levels under any lights: corners are lit already, midpoints are lit here.
-#[inline(always)]
+#[inline]
 fn lit(setup: &TriangleSetup<'_>, shading: &Shading<'_>) -> [[i32; 6]; 3] {
     let [[r0, g0, b0], [r1, g1, b1], [r2, g2, b2]] = setup.levels();
     let [[r3, g3, b3], [r4, g4, b4], [r5, g5, b5]] = shading.middle_levels(setup);

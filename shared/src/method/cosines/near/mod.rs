@@ -171,7 +171,7 @@ trait Left: Copy {
 struct Whole;
 
 impl Left for Whole {
-    #[inline(always)]
+    #[inline]
     fn of(&self, light: CosineAndHighlight, _: u32) -> CosineAndHighlight {
         light
     }
@@ -186,7 +186,7 @@ struct Ranged {
 }
 
 /// |P|², unsigned Q0.32, as it is walked, from the form in which the table of reciprocal roots is indexed.
-#[inline(always)]
+#[inline]
 fn squared(square: u32) -> u32 {
     // Rounding may carry it a little below the least square, or above 1, which does not fit.
     const BELOW: u32 = 1 << 28;
@@ -194,7 +194,7 @@ fn squared(square: u32) -> u32 {
 }
 
 impl Left for Ranged {
-    #[inline(always)]
+    #[inline]
     fn of(&self, (cosine, highlight): CosineAndHighlight, square: u32) -> CosineAndHighlight {
         let strength = self.nearness.strength(squared(square));
         let above = highlight.wrapping_sub(self.floor);
@@ -280,7 +280,7 @@ enum Either<'a, C: Pixel> {
 }
 
 impl<C: Pixel> ByRows for Either<'_, C> {
-    #[inline(always)]
+    #[inline]
     fn step_row(&mut self) {
         match self {
             Self::Ramp(colours) => colours.step_row(),
@@ -292,7 +292,7 @@ impl<C: Pixel> ByRows for Either<'_, C> {
 impl<C: Pixel> LitColours for Either<'_, C> {
     type Pixel = C;
 
-    #[inline(always)]
+    #[inline]
     fn diffuse(&self) -> u16 {
         match self {
             Self::Ramp(colours) => colours.diffuse(),
@@ -302,7 +302,7 @@ impl<C: Pixel> LitColours for Either<'_, C> {
 }
 
 impl<C: Pixel> Shades<WithHighlight> for Either<'_, C> {
-    #[inline(always)]
+    #[inline]
     fn colour(&self, bits: u32, light: WithHighlight) -> C {
         match self {
             Self::Ramp(colours) => colours.colour(bits, light),

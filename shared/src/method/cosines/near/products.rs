@@ -164,13 +164,13 @@ pub(super) fn least([a, b, c, ab, bc, ca]: [i32; 6]) -> i32 {
 }
 
 /// |P|², Q2.30, as the table of reciprocal roots is indexed.
-#[inline(always)]
+#[inline]
 fn above_least(square: i32) -> u32 {
     ((square as u32) << 2).wrapping_sub(LEAST)
 }
 
 /// N·H, Q7.25, from N·F, Q2.30, and N·P and F·P, Q5.27, where P has the length 1 and N any.
-#[inline(always)]
+#[inline]
 pub(super) fn half(lengths: &HalfRsqrt, nf: i32, np: i32, fp: i32) -> i32 {
     // |F + P|² / 4 = (1 + F·P) / 2, of which half the reciprocal root is 1 / |F + P|.
     let quarter = (1u32 << 31).wrapping_add((fp as u32) << 4);
