@@ -53,24 +53,24 @@ impl RowRange {
 }
 
 /// The state that steps from row to row.
-struct Rows<'b, D, P: Patch, T: PixelShader<<P::Walker as Walker>::Value>> {
+pub(crate) struct Rows<'b, D, P: Patch, T: PixelShader<<P::Walker as Walker>::Value>> {
     /// Pixels and depth buffer of the band, `width` of each in a row, or the room for a run, see [`RunFiller`].
-    pixels: &'b mut [T::Pixel],
-    buffer: &'b mut [u16],
-    width: usize,
+    pub(crate) pixels: &'b mut [T::Pixel],
+    pub(crate) buffer: &'b mut [u16],
+    pub(crate) width: usize,
     /// Index of the first pixel of the coming row.
-    start: usize,
-    sides: LeftRight,
+    pub(crate) start: usize,
+    pub(crate) sides: LeftRight,
     /// Pixels of the coming row.
-    count: u32,
+    pub(crate) count: u32,
     /// Rows to come.
-    height: u32,
+    pub(crate) height: u32,
     /// Pixels of the rows that are done.
-    filled: u32,
+    pub(crate) filled: u32,
     /// The plane of depth, or [`Constant`] without a depth test.
-    depth: D,
-    patch: P,
-    shader: T,
+    pub(crate) depth: D,
+    pub(crate) patch: P,
+    pub(crate) shader: T,
 }
 
 const _: () = {
@@ -226,7 +226,7 @@ impl<'f> ScreenTriangle<'f> {
         gradients: &Gradients,
         depth: D,
         patch: P,
-        mut shader: T,
+        shader: T,
         band: &mut Band<'_, T::Pixel>,
     ) -> u32 {
         if T::TRANSPARENT && band.is_transparent() {
@@ -236,10 +236,8 @@ impl<'f> ScreenTriangle<'f> {
             return self.walk_by_kernel(gradients, depth, patch, shader, band);
         }
         let sides = &self.rows.sides;
-        let (mut row, mut stop, start) = (sides.row, sides.stop, band.start(sides.row));
-        shader.start_at(row);
-        let (pixels, buffer, width) = (&mut *band.pixels, &mut *band.depth, band.width);
-        let mut rows = Rows { pixels, buffer, width, start, sides: sides.pair, count: 0, height: 0, filled: 0, depth, patch, shader };
+        let (mut row, mut stop) = (sides.row, sides.stop);
+        let mut rows = Rows::new(band, row, sides.pair, depth, patch, shader);
         if self.rows.resumed == 0 && row != gradients.row() {
             rows.patch.jump(row.wrapping_sub(gradients.row()));
         }
@@ -492,7 +490,9 @@ fn save_active<D: Patch, P: Patch>((key, edges): (u32, EdgeState), depth: &D, pa
 /// compiler would count in two registers instead of one. On other processors, or where nothing is walked, a copy on the stack takes fewer
 /// instructions.
 #[inline(never)]
-fn fill_rows<D: Patch<Walker: DepthTest>, P: Patch, T: PixelShader<<P::Walker as Walker>::Value>>(mut rows: &mut Rows<'_, D, P, T>) {
+pub(crate) fn fill_rows<D: Patch<Walker: DepthTest>, P: Patch, T: PixelShader<<P::Walker as Walker>::Value>>(
+    mut rows: &mut Rows<'_, D, P, T>,
+) {
     if Rows::<D, P, T>::LOCAL {
         rows.fill_here();
         return;
@@ -538,12 +538,20 @@ impl<D: Patch<Walker: DepthTest>, P: Patch, T: PixelShader<<P::Walker as Walker>
     }
 }
 
-impl<D: Patch<Walker: DepthTest>, P: Patch, T: PixelShader<<P::Walker as Walker>::Value>> Rows<'_, D, P, T> {
+impl<'b, D: Patch<Walker: DepthTest>, P: Patch, T: PixelShader<<P::Walker as Walker>::Value>> Rows<'b, D, P, T> {
     /// Whether rows are filled in a local copy, see [`fill_rows`].
     const LOCAL: bool = HALVES || cfg!(not(target_arch = "arm")) || size_of::<P>() == 0;
 
     /// Whether pixels are counted a row ahead in that copy, so that the count need not be kept during the pixel loop.
     const AHEAD: bool = Self::LOCAL && cfg!(target_arch = "arm") && P::WORDS <= 6;
+
+    /// The state before the first row, which is `row` of the picture.
+    #[inline(always)]
+    pub(crate) fn new(band: &'b mut Band<'_, T::Pixel>, row: i32, sides: LeftRight, depth: D, patch: P, mut shader: T) -> Self {
+        let (width, start) = (band.width, band.start(row));
+        shader.start_at(row);
+        Self { pixels: band.pixels, buffer: band.depth, width, start, sides, count: 0, height: 0, filled: 0, depth, patch, shader }
+    }
 
     /// Fills one row and steps the edges to the next.
     #[inline(always)]
