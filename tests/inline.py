@@ -3,7 +3,8 @@
 
 usage: tests/inline.py [--short] [--frames] [--keep] PLACE...
 
-PLACE is a file or folder of shared/src, or FILE:FUNCTION. Generic functions keep no attribute, and others #[inline].
+PLACE is a file or folder of shared/src, or FILE:FUNCTION. Its functions get #[inline] instead. Functions with #[inline] may be about six times as large
+as others before the compiler refuses to inline them. The places are taken away together: a function often costs more alone than together with others.
 --short   only functions whose body is one line
 --frames  also counts instructions of the recorded frames, by target/stress/microphong: cargo build --profile stress --features boards
 --keep    does not put it back
@@ -20,25 +21,22 @@ PROGRAMS = ["gouraud-binary", "gouraud-rgb565", "phong-rgb565", "auto-linear-rgb
 
 
 def attributes(lines, short):
-    """Numbers of lines with the attribute, the functions' names, and what may stand there instead."""
+    """Numbers of lines with the attribute, and the functions' names."""
     for at in (n for n, line in enumerate(lines) if line.strip() == "#[inline(always)]"):
         fn = next(n for n in range(at, len(lines)) if re.search(r"\bfn \w", lines[n]))
         body = next(n for n in range(fn, len(lines)) if lines[n].endswith(("{", "}")))
         if short and lines[body + 2].strip() != "}":
             continue
-        outside = rf" {{0,{max(len(lines[at]) - len(lines[at].lstrip()) - 4, 0)}}}(impl|trait)\b"
-        head = next((lines[n] for n in range(at, -1, -1) if re.match(outside, lines[n])), "") if lines[at][0] == " " else ""
-        generic = re.search(r"(fn \w+|impl)<(?!('\w+(: '\w+)?(, )?)+>)|: &?impl |trait ", head + "\n" + lines[fn])
-        yield at, re.search(r"\bfn (\w+)", lines[fn])[1], None if generic else "#[inline]"
+        yield at, re.search(r"\bfn (\w+)", lines[fn])[1]
 
 
 def edit(path, name, short):
     lines = path.read_text().split("\n")
     found = [a for a in attributes(lines, short) if name in ("", a[1])]
-    for at, _, instead in reversed(found):
-        lines[at : at + 1] = [lines[at].replace("#[inline(always)]", instead)] if instead else []
+    for at, _ in found:
+        lines[at] = lines[at].replace("#[inline(always)]", "#[inline]")
     path.write_text("\n".join(lines))
-    return {(str(path.relative_to(SOURCE)), name) for _, name, _ in found}
+    return {(str(path.relative_to(SOURCE)), name) for _, name in found}
 
 
 def run(*command, **options):
