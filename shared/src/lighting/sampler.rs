@@ -1,6 +1,7 @@
 //! Textures at a pixel: the nearest texel, and its colour.
 
 use crate::{
+    arch::product::{HALVES, unsigned_product},
     features::TEXTURED,
     format::{COSINE, TEXTURE},
     lighting::albedo::Albedo,
@@ -16,7 +17,11 @@ pub type IfTextured<T> = [T; TEXTURED];
 /// A place in a texture: columns to the right and rows downwards, in widths and heights of it, Q4.12.
 pub(crate) type Place = [i32; 2];
 
-/// Fraction bits of a walked place, which is a sixteenth of [`Place`] in the format of cosines. What stands above them is not used.
+/// A place of which the number of a texel is cut by three operations: the row's number stands in the uppermost bits of the second word, and the column's
+/// number in the first word right below these bits. What stands above it is not used.
+pub(crate) type Aligned = [u32; 2];
+
+/// Fraction bits of a walked place, which is a sixteenth of [`Place`] in the format of cosines.
 const WALKED: u32 = COSINE - 4;
 /// Bits by which a [`Place`] at a corner is shifted to have [`WALKED`] fraction bits.
 pub(crate) const FINER: u32 = WALKED - TEXTURE;
@@ -26,8 +31,8 @@ pub(crate) const FINER: u32 = WALKED - TEXTURE;
 pub struct Sampler<'f> {
     palette: &'f [Colour],
     texels: &'f [u8],
-    /// For columns and rows of a walked place, bits by which they are shifted to the right to be parts of the number of a texel, and these parts.
-    digits: [[u32; 2]; 2],
+    /// The bits of an aligned place that the number of a row takes.
+    rows: u32,
     /// The binary logarithms of width and height.
     size: [u8; 2],
     is_gray: bool,
@@ -49,16 +54,35 @@ impl<'f> Sampler<'f> {
     /// The texture of a mesh, and where its triangles lie in it. Pixel formats of greys take the luma of its colours.
     pub(crate) fn new(texture: MeshTexture<'f>, is_gray: bool) -> (Self, &'f [TextureCorners]) {
         let MeshTexture { palette, texels, size, has_holes, corners } = texture;
-        let [width, height] = size.map(u32::from);
-        let digits = [[WALKED - width, (1 << width) - 1], [WALKED - width - height, ((1 << height) - 1) << width]];
-        (Self { palette, texels, digits, size, is_gray, has_holes }, corners)
+        let [_, height] = size;
+        (Self { palette, texels, rows: !(u32::MAX >> height), size, is_gray, has_holes }, corners)
+    }
+
+    /// A walked place with [`WALKED`] fraction bits.
+    #[inline(always)]
+    pub(crate) fn aligned(&self, [u, v]: [u32; 2]) -> Aligned {
+        let [_, height] = self.size;
+        [u << (32 - WALKED) >> (height & 31), v << (32 - WALKED)]
+    }
+
+    /// How many bits to the left places with so many fraction bits are shifted to be [`Aligned`].
+    #[inline]
+    pub(crate) fn alignment(&self, fraction: u32) -> [i32; 2] {
+        let [_, height] = self.size;
+        [32 - fraction as i32 - i32::from(height), 32 - fraction as i32]
     }
 
     /// The colour of the texel at a place, which is rounded down to whole texels.
     #[inline]
-    pub(crate) fn texel(&self, [u, v]: [u32; 2]) -> Colour {
-        let [[right, columns], [down, rows]] = self.digits;
-        let texel = (u >> (right & 31) & columns | v >> (down & 31) & rows) as usize;
+    pub(crate) fn texel(&self, [u, v]: Aligned) -> Colour {
+        let digits = u ^ (u ^ v) & self.rows;
+        // A share of the number of texels, which is a power of two.
+        let texel = if HALVES {
+            let [width, height] = self.size;
+            (digits >> 1 >> (31 - u32::from(width) - u32::from(height))) as usize
+        } else {
+            (unsigned_product(digits, self.texels.len() as u32) >> 32) as usize
+        };
         // A checked stream has all texels, and all of their colours.
         let colour = self.texels.get(texel).and_then(|&index| self.palette.get(usize::from(index)));
         *colour.unwrap_or(&Colour::new([0; 3]))
@@ -95,7 +119,7 @@ mod tests {
         let at = |u: f64, v: f64| {
             let place = [u, v].map(|c| (c * f64::from(1u32 << WALKED)) as i64 as u32);
             let texture = texture(&palette);
-            let Colour { channels: [red, ..], .. } = texture.texel(place);
+            let Colour { channels: [red, ..], .. } = texture.texel(texture.aligned(place));
             red
         };
         assert_eq!([at(0.0, 0.0), at(0.6, 0.0), at(0.0, 0.3), at(0.99, 0.99)], [0, 1, 2, 7]);

@@ -67,6 +67,8 @@ pub enum PlaceWalker {
 
 /// Bits of the range of a place at corners.
 const PLACE: u32 = TEXTURE + 4;
+/// Fraction bits that a place which a plane interpolates has more than at corners.
+const MORE: u32 = 16;
 
 /// The largest error of a place on the screen: a quarter of a texel, in the unit of [`Sampler::range`].
 const MOST: u32 = 2;
@@ -120,9 +122,10 @@ impl TriangleSetup<'_> {
 
     /// The place in a texture as a plane on the screen.
     #[inline(never)]
-    fn place_by_plane(&self, Textured { places, .. }: &Textured<'_>) -> Plane<2> {
+    fn place_by_plane(&self, Textured { sampler, places, .. }: &Textured<'_>) -> Plane<2> {
         let [[u0, v0], [u1, v1], [u2, v2]] = *places;
-        Nodes::<3, 2, PLACE>::new([[u0, u1, u2], [v0, v1, v2]], FINER).fit(self.gradients)
+        let plane = Nodes::<3, 2, PLACE>::new([[u0, u1, u2], [v0, v1, v2]], MORE).fit(self.gradients);
+        plane.shifted(sampler.alignment(TEXTURE + MORE))
     }
 
     /// Draws the triangle, whose light is `field`, by `shader` with the texture. Returns the number of pixels drawn; `None` if it has no texture.
@@ -314,7 +317,7 @@ impl<const CH: usize> Light<3, CH> {
     ) -> Option<u32> {
         let level = |levels| Nodes::<3, CH, RANGE>::new(levels, CHANNEL - LEVEL).slant();
         let seen = setup.in_space((linear(corner_nodes(texture)).slant(), (level(self.diffuse), level(self.specular))))?;
-        Some(setup.fill(|| Placed { place: seen, sampler: texture.sampler }, pixels, band))
+        Some(setup.fill(|| Placed::<_, false> { place: seen, sampler: texture.sampler }, pixels, band))
     }
 
     /// The light at the corners and at these shares of the edges.
@@ -373,11 +376,11 @@ impl<const CH: usize> Drawn<CH> for Light<3, CH> {
         let fit = |levels| Nodes::<3, CH, RANGE>::new(levels, CHANNEL - LEVEL).fit(setup.gradients);
         let way = setup.way_of_places(texture);
         if matches!(way, LinearWay::Plane) {
-            let place = || Placed { place: setup.place_by_plane(texture), sampler: texture.sampler };
+            let place = || Placed::<_, true> { place: setup.place_by_plane(texture), sampler: texture.sampler };
             return Some(self.fill(setup, place, fit, pixels, band));
         }
         if let Some(quadratic) = by_quadratic(setup, texture, way) {
-            let place = || Placed { place: ByColumn(quadratic), sampler: texture.sampler };
+            let place = || Placed::<_, false> { place: ByColumn(quadratic), sampler: texture.sampler };
             return Some(self.fill(setup, place, fit, pixels, band));
         }
         if PERSPECTIVE && setup.inv_depth().is_some() {
@@ -402,7 +405,7 @@ impl<const CH: usize> Drawn<CH> for Light<6, CH> {
         }
         let fit = |levels| ByColumn(Nodes::<6, CH, RANGE>::new(levels, CHANNEL - LEVEL).fit(setup.gradients));
         if let Some(quadratic) = by_quadratic(setup, texture, setup.way_of_places(texture)) {
-            let place = || Placed { place: ByColumn(quadratic), sampler: texture.sampler };
+            let place = || Placed::<_, false> { place: ByColumn(quadratic), sampler: texture.sampler };
             return Some(self.fill(setup, place, fit, pixels, band));
         }
         let place = setup.place_in_space(texture)?;
@@ -581,8 +584,8 @@ pub trait AtPlace {
     /// The texel, and what is beside the place.
     type Texel;
 
-    /// Takes the texel from `sampler`.
-    fn texel(self, sampler: &Sampler<'_>) -> Self::Texel;
+    /// Takes the texel from `sampler`. The bits of the place stand where the sampler needs them if it is `aligned`.
+    fn texel(self, sampler: &Sampler<'_>, aligned: bool) -> Self::Texel;
 
     /// The colour of a texel.
     fn colour(texel: &Self::Texel) -> Colour;
@@ -592,8 +595,8 @@ impl AtPlace for [u32; 2] {
     type Texel = Colour;
 
     #[inline]
-    fn texel(self, sampler: &Sampler<'_>) -> Colour {
-        sampler.texel(self)
+    fn texel(self, sampler: &Sampler<'_>, aligned: bool) -> Colour {
+        sampler.texel(if aligned { self } else { sampler.aligned(self) })
     }
 
     #[inline]
@@ -606,9 +609,9 @@ impl<V> AtPlace for ([u32; 2], V) {
     type Texel = (Colour, V);
 
     #[inline]
-    fn texel(self, sampler: &Sampler<'_>) -> (Colour, V) {
+    fn texel(self, sampler: &Sampler<'_>, aligned: bool) -> (Colour, V) {
         let (place, light) = self;
-        (place.texel(sampler), light)
+        (place.texel(sampler, aligned), light)
     }
 
     #[inline]
@@ -619,15 +622,15 @@ impl<V> AtPlace for ([u32; 2], V) {
 
 /// A place that is walked, see [`AtPlace`]. Where the texture has a hole, the surface covers no pixel.
 #[derive(Clone, Copy, Debug)]
-pub struct Placed<'f, P> {
-    /// The place, and what is beside it.
+pub struct Placed<'f, P, const ALIGNED: bool = false> {
+    /// The place, and what is beside it. Its bits already stand where the sampler cuts the number of a texel from them, or are moved there at each pixel.
     pub place: P,
     /// The texture.
     pub sampler: &'f Sampler<'f>,
 }
 
-impl<'f, P: Patch<Walker: Walker<Value: AtPlace>>> Patch for Placed<'f, P> {
-    type Walker = Placed<'f, P::Walker>;
+impl<'f, P: Patch<Walker: Walker<Value: AtPlace>>, const ALIGNED: bool> Patch for Placed<'f, P, ALIGNED> {
+    type Walker = Placed<'f, P::Walker, ALIGNED>;
 
     #[inline(always)]
     fn jump(&mut self, rows: i32) {
@@ -645,7 +648,7 @@ impl<'f, P: Patch<Walker: Walker<Value: AtPlace>>> Patch for Placed<'f, P> {
     }
 }
 
-impl<W: Walker<Value: AtPlace>> Walker for Placed<'_, W> {
+impl<W: Walker<Value: AtPlace>, const ALIGNED: bool> Walker for Placed<'_, W, ALIGNED> {
     type Value = <W::Value as AtPlace>::Texel;
 
     #[inline]
@@ -655,7 +658,7 @@ impl<W: Walker<Value: AtPlace>> Walker for Placed<'_, W> {
 
     #[inline(always)]
     fn value(&self) -> Self::Value {
-        self.place.value().texel(self.sampler)
+        self.place.value().texel(self.sampler, ALIGNED)
     }
 
     const HAS_HOLES: bool = TRANSPARENCY;
