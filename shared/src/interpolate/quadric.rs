@@ -5,7 +5,7 @@ use crate::{
     setup::{gradients::Gradients, word_sized::QUADRATIC},
 };
 use microphong_kernels::Fields;
-use zerocopy::{FromBytes, Immutable, IntoBytes, KnownLayout, transmute, transmute_mut};
+use zerocopy::{FromBytes, Immutable, IntoBytes, KnownLayout, transmute_mut};
 
 /// A quadratic function `c + dx x + dy y + dxx x² + dxy x y + dyy y²` in each of `CH` channels, standing on one row.
 #[derive(Clone, Copy, Debug)]
@@ -188,14 +188,18 @@ impl<const CH: usize> Patch for Quadric<CH> {
     fn save(&self, words: &mut [u32]) {
         let (rows, _) = words.as_chunks_mut::<6>();
         for (words, row) in rows.iter_mut().zip(&self.0) {
-            *words = transmute!(*row);
+            *words = [row.c, row.c_down, row.c_down2, row.dx, row.dx_down, row.dxx].map(|c| c as u32);
         }
     }
 
     #[inline]
     fn load(words: &[u32]) -> Option<Self> {
         let (rows, _) = words.as_chunks::<6>();
-        Some(Self(rows.first_chunk::<CH>()?.map(|words| transmute!(words))))
+        let rows = rows.first_chunk::<CH>()?;
+        Some(Self(rows.map(|words| {
+            let [c, c_down, c_down2, dx, dx_down, dxx] = words.map(|c| c as i32);
+            QuadricRow { c, c_down, c_down2, dx, dx_down, dxx }
+        })))
     }
 
     #[inline(always)]
