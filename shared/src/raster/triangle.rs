@@ -130,7 +130,21 @@ impl<'f> ScreenTriangle<'f> {
 
     /// Whether the triangle contains no centre of a pixel in the rows of the band.
     pub(crate) fn covers_nothing(&self) -> bool {
-        self.each_row(|_, pair| pair.columns() == 0).is_some()
+        let sides = &self.rows.sides;
+        let (mut row, mut stop, mut pair) = (sides.row, sides.stop, sides.pair);
+        loop {
+            while row < stop {
+                if pair.columns() > 0 {
+                    return false;
+                }
+                pair.skip(1);
+                row += 1;
+            }
+            if stop >= sides.end {
+                return true;
+            }
+            stop = self.next(row, &mut pair);
+        }
     }
 
     /// Computes the plane of depth now; otherwise it is computed when the triangle is drawn.
@@ -170,38 +184,25 @@ impl<'f> ScreenTriangle<'f> {
     /// Draws the triangle's rows in `canvas` by the general loop. Returns the number of its pixels there. `shader` stands on the anchor's row.
     #[inline(never)]
     pub fn draw_spans(&self, gradients: &Gradients, shader: &mut dyn SpanShader, canvas: &mut dyn Canvas) -> u32 {
-        let (first, mut pixels) = (self.rows.sides.row, 0u32);
-        let mut depth = self.plane(gradients, first);
-        shader.jump(first.wrapping_sub(gradients.row()));
-        self.each_row(|row, pair| {
-            let (end, count) = ((pair.right.x >> COLUMN) as i32, pair.columns());
-            if count > 0 {
-                canvas.draw_row(row, end, count as usize, depth.enter(end), shader);
-                pixels = pixels.wrapping_add(count);
-            }
-            depth.step_row();
-            shader.step_row();
-            true
-        });
-        pixels
-    }
-
-    /// Calls `visit` with each row in the band and its sides until it returns false. Returns the sides of the row below the last one, or `None` if it
-    /// has returned false.
-    #[inline(always)]
-    fn each_row(&self, mut visit: impl FnMut(i32, LeftRight) -> bool) -> Option<LeftRight> {
         let sides = &self.rows.sides;
         let (mut row, mut stop, mut pair) = (sides.row, sides.stop, sides.pair);
+        let mut depth = self.plane(gradients, row);
+        shader.jump(row.wrapping_sub(gradients.row()));
+        let mut pixels = 0u32;
         loop {
             while row < stop {
-                if !visit(row, pair) {
-                    return None;
+                let (end, count) = ((pair.right.x >> COLUMN) as i32, pair.columns());
+                if count > 0 {
+                    canvas.draw_row(row, end, count as usize, depth.enter(end), shader);
+                    pixels = pixels.wrapping_add(count);
                 }
                 pair.skip(1);
+                depth.step_row();
+                shader.step_row();
                 row += 1;
             }
             if stop >= sides.end {
-                return Some(pair);
+                return pixels;
             }
             stop = self.next(row, &mut pair);
         }
@@ -285,17 +286,22 @@ impl<'f> ScreenTriangle<'f> {
     /// Draws the rows of a transparent surface. The depth stands on the first row, and the polynomial of a triangle that is not resumed on the anchor's.
     #[inline(never)]
     fn fill_glass<C: Pixel>(&self, gradients: &Gradients, surface: &mut dyn RunFiller<C>, behind: &mut Behind<'_, '_, C>) -> u32 {
-        let (RowRange { sides, key, resumed, .. }, mut filled) = (&self.rows, 0u32);
-        surface.start_at(sides.row, if *resumed == 0 { sides.row.wrapping_sub(gradients.row()) } else { 0 });
-        let below = self.each_row(|_, pair| {
-            behind.cover(surface, pair);
-            filled = filled.wrapping_add(pair.columns());
-            true
-        });
-        if let Some(pair) = below
-            && *key != 0
-            && sides.goes_on()
-        {
+        let RowRange { sides, key, resumed, .. } = &self.rows;
+        let (mut row, mut stop, mut pair, mut filled) = (sides.row, sides.stop, sides.pair, 0u32);
+        surface.start_at(row, if *resumed == 0 { row.wrapping_sub(gradients.row()) } else { 0 });
+        loop {
+            while row < stop {
+                behind.cover(surface, pair);
+                filled = filled.wrapping_add(pair.columns());
+                pair.skip(1);
+                row += 1;
+            }
+            if stop >= sides.end {
+                break;
+            }
+            stop = self.next(row, &mut pair);
+        }
+        if *key != 0 && sides.goes_on() {
             surface.save((*key, sides), pair, behind.active);
         }
         filled
