@@ -69,9 +69,9 @@ enum Painter<'a, C> {
 }
 
 impl<C: Patch<Walker: Walker<Value = [u32; 2]>>> Coloured<'_, C> {
-    /// Multiplies the sums of ambient and diffuse light of the `visible` ones of `run` pixels by the colour, and adds highlights. The runs lie
-    /// left of the column `x`.
-    fn paint(&mut self, levels: &mut [[i32; 3]; CHUNK], run: usize, visible: u32, x: i32) {
+    /// Multiplies the sums of ambient and diffuse light of the `visible` ones of `run` pixels by the colour, and adds highlights. The runs lie `rows` rows
+    /// below the current one, left of the column `x`.
+    fn paint(&mut self, levels: &mut [[i32; 3]; CHUNK], run: usize, visible: u32, [rows, x]: [i32; 2]) {
         let light = levels.iter_mut().zip(&*self.highlights).take(run).rev();
         let reflect = |sums: &mut [i32; 3], highlights: &[i32; 3], shares: [i64; 3]| {
             let reflected = zip(*sums, shares, |level, share| ((i64::from(level) * share) >> 16) as i32);
@@ -79,7 +79,7 @@ impl<C: Patch<Walker: Walker<Value = [u32; 2]>>> Coloured<'_, C> {
         };
         match &self.painter {
             Painter::Corners(shares) => {
-                let mut walkers = shares.each_ref().map(|share| share.enter(x));
+                let mut walkers = shares.each_ref().map(|share| enter(share, rows, x));
                 for (sums, highlights) in light {
                     walkers.iter_mut().for_each(Walker::step);
                     let [[red, green], [blue, _]] = walkers.each_ref().map(Walker::value);
@@ -87,7 +87,7 @@ impl<C: Patch<Walker: Walker<Value = [u32; 2]>>> Coloured<'_, C> {
                 }
             }
             Painter::Texture(place) if TEXTURES => {
-                let (mut walker, sampler) = (place.enter(x), place.sampler);
+                let (mut walker, sampler) = (enter(place, rows, x), place.sampler);
                 let mut bit = 1 << run;
                 for (sums, highlights) in light {
                     walker.step();
@@ -150,6 +150,17 @@ struct ManyLights<'a, 's, K, P, D, W, C, F, S> {
     levels: &'a mut [[i32; 3]; CHUNK],
 }
 
+/// A walker that stands on column `x`, `rows` rows below `patch`.
+#[inline(always)]
+fn enter<P: Patch>(patch: &P, rows: i32, x: i32) -> P::Walker {
+    if rows == 0 {
+        return patch.enter(x);
+    }
+    let mut patch = *patch;
+    patch.jump(rows);
+    patch.enter(x)
+}
+
 impl<K, P, D, W, C, F> SpanShader for ManyLights<'_, '_, K, P, D, W, C, F, F::Common>
 where
     K: Patch,
@@ -159,10 +170,10 @@ where
     C: Patch<Walker: Walker<Value = [u32; 2]>>,
     F: LightingModel<<K::Walker as Walker>::Value, <P::Walker as Walker>::Value, <D::Walker as Walker>::Value>,
 {
-    fn span(&mut self, end: i32, count: usize, target: &mut dyn SpanTarget) {
+    fn span(&mut self, rows: i32, end: i32, count: usize, target: &mut dyn SpanTarget) {
         let Self { reflectance, model, common, lights, diffuse, lut, ambient, colour, shared, levels } = self;
         let mut colour = colour.first_mut().and_then(Option::as_mut);
-        let mut common = common.enter(end);
+        let mut common = enter(common, rows, end);
         let (intensity, floor) = (reflectance.intensities(), reflectance.highlights.floor());
         let mut first = count;
         while first > 0 {
@@ -174,7 +185,7 @@ where
                 && TRANSPARENCY
                 && let Some(Coloured { painter: Painter::Texture(place), .. }) = &colour
             {
-                target.cover(covered(&place.enter(entry), run));
+                target.cover(covered(&enter(place, rows, entry), run));
             }
             let visible = target.visible(first, run);
             // Counted down, and the index cut off: no bounds are left to check.
@@ -195,7 +206,7 @@ where
                 continue;
             }
             for (light, patch, factors, changes) in lights.iter() {
-                let (mut walker, mut changes) = (patch.enter(entry), entered(changes, |way| way.enter(entry)));
+                let (mut walker, mut changes) = (enter(patch, rows, entry), entered(changes, |way| enter(way, rows, entry)));
                 let mut k = run;
                 while k > 0 {
                     k -= 1;
@@ -216,7 +227,7 @@ where
             }
             if size_of::<<D::Walker as Walker>::Value>() > 0 {
                 for (patch, factors, changes) in diffuse.iter() {
-                    let (mut walker, mut changes) = (patch.enter(entry), entered(changes, |way| way.enter(entry)));
+                    let (mut walker, mut changes) = (enter(patch, rows, entry), entered(changes, |way| enter(way, rows, entry)));
                     let mut k = run;
                     while k > 0 {
                         k -= 1;
@@ -230,7 +241,7 @@ where
                 }
             }
             if let Some(colour) = &mut colour {
-                colour.paint(levels, run, visible, entry);
+                colour.paint(levels, run, visible, [rows, entry]);
             }
             for sums in levels.iter_mut().take(run) {
                 let [r, g, b] = intensity(*sums);

@@ -28,8 +28,9 @@ pub const CHUNK: usize = 16;
 
 /// Shades a triangle row by row. It stands on one of its rows.
 pub trait SpanShader {
-    /// Shades the `count` pixels of the current row to the left of column `end`, from right to left. It puts them into `target`.
-    fn span(&mut self, end: i32, count: usize, target: &mut dyn SpanTarget);
+    /// Shades the `count` pixels to the left of column `end`, from right to left, in the row that is `rows` rows below the current one. It puts them
+    /// into `target`.
+    fn span(&mut self, rows: i32, end: i32, count: usize, target: &mut dyn SpanTarget);
 
     /// Moves down `rows` rows.
     fn jump(&mut self, rows: i32);
@@ -90,8 +91,14 @@ impl<P, S> Shaded<P, S> {
 }
 
 impl<P: Patch, S: IntensityShader<<P::Walker as Walker>::Value>> SpanShader for Shaded<P, S> {
-    fn span(&mut self, end: i32, count: usize, target: &mut dyn SpanTarget) {
-        let mut walker = self.patch.enter(end);
+    fn span(&mut self, rows: i32, end: i32, count: usize, target: &mut dyn SpanTarget) {
+        let mut walker = if rows == 0 {
+            self.patch.enter(end)
+        } else {
+            let mut patch = self.patch;
+            patch.jump(rows);
+            patch.enter(end)
+        };
         let intensities = &mut self.intensities;
         let mut first = count;
         while first > 0 {
@@ -201,7 +208,7 @@ impl<C: Pixel> Canvas for BandCanvas<'_, '_, C> {
         if let (Some(pixels), Some(depth)) = (self.band.pixels.get_mut(start..stop), self.band.depth.get_mut(start..stop)) {
             let seen = self.band.sheet.each_ref().map(|sheet| Seen { glass: sheet.glass, covered: u32::MAX });
             let mut target = CanvasRow { pixels, depth, inv_depth, colourist: self.colourist, row: row as usize, seen };
-            shader.span(end, count, &mut target);
+            shader.span(0, end, count, &mut target);
         }
     }
 }
