@@ -24,7 +24,7 @@ use crate::{
 use core::ops::Deref;
 use zerocopy::{FromBytes, Immutable, IntoBytes, KnownLayout};
 
-/// [`Reflectance::lights`] where the diffuse light of all lights is summed.
+/// `Reflectance::lights` where the diffuse light of all lights is summed.
 pub const SUMMED: u8 = 3;
 
 /// Light levels that one light adds at cosine 1, for each channel, in Q9.7.
