@@ -204,7 +204,7 @@ impl Layout {
             return [0; 5];
         }
         let Self { width, processors, edges, .. } = *self;
-        // At least the pixels of a row.
+        // There is room for the pixels of a row at least.
         let marked = (width + self.band() / 4) * processors;
         [edges, edges * processors, self.band() * processors, marked, marked + 2 * width * processors]
     }

@@ -104,7 +104,7 @@ impl Pose {
             [xz - zx, xy + yx, one - xx + yy - zz, yz + zy],
             [yx - xy, zx + xz, yz + zy, one - xx - yy + zz],
         ];
-        // Of equally long ones the first.
+        // The first of several that are equally long is taken.
         let longest = candidates.into_iter().enumerate().rev().max_by_key(|(k, candidate)| candidate.get(*k).copied());
         Self::rotated(longest.map_or([0; 4], |(_, candidate)| candidate))
     }

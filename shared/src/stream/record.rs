@@ -547,7 +547,7 @@ pub struct Triangle {
 }
 
 impl Triangle {
-    /// The triangle's own of the `vertices` of its mesh, clockwise on the screen, which is against the order of the record; `None` if one is
+    /// The vertices of the triangle among all `vertices` of its mesh, clockwise on the screen, which is against the order of the record; `None` if one is
     /// missing.
     #[inline]
     pub(crate) fn vertices<'a>(&self, vertices: &'a [Vertex]) -> Option<[&'a Vertex; 3]> {

@@ -56,7 +56,7 @@ const WITH_HIGHLIGHT: u8 = <WithHighlight as FromValues<DefectLookup<'_>, ([u32;
 const DIFFUSE_ONLY: u8 = <DiffuseOnly as FromValues<(), [u32; 1]>>::ID;
 
 /// Whether the quadratic goes through roots of N·H, or through N·H itself, for a method whose table of highlights is that of [`Highlight::Half`].
-/// That is set up sooner and less accurate.
+/// The latter is set up sooner, and it is less accurate.
 type IsRoot = bool;
 
 /// One, Q2.30.

@@ -112,7 +112,7 @@ pub(crate) fn draw<C: Pixel>(
     }
 }
 
-/// Draws `setup` under a light at `position`, Q7.25, of which this is `left`, where `towards` is the direction to the viewer, Q2.30.
+/// Draws `setup` under a light at `position`, Q7.25. Its range leaves `left` of it. `towards` is the direction to the viewer, Q2.30.
 fn draw_by_near_light<C: Pixel>(
     setup: &TriangleSetup<'_>,
     [position, towards]: [[i32; 3]; 2],
@@ -259,7 +259,7 @@ impl<W: Left> AtPixel<([u32; 1], ([u32; 1], [u32; 1]))> for Diffuse<'_, W> {
     #[inline(always)]
     fn at(&self, ([nn], ([pp], [np])): ([u32; 1], ([u32; 1], [u32; 1]))) -> ((), i32) {
         let np = upper(signed(np), self.lengths.rsqrt(pp) as i32);
-        // There is no highlight, and what would be left of one is not computed.
+        // There is no highlight. The compiler drops what would be left of one.
         let (cosine, _) = self.left.of((upper(np << 3, self.lengths.rsqrt(nn) as i32), 0), pp);
         ((), cosine)
     }
