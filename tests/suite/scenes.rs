@@ -513,6 +513,7 @@ fn what_cannot_be_drawn_is_refused() {
         (Pose::IDENTITY.at([MAX_POSITION + I18F14::DELTA, I18F14::ZERO, I18F14::ZERO]).err(), SceneError::Position, "16 units"),
         (Pose::IDENTITY.scaled(U16F16::from_num(9)).err(), SceneError::Scale, "1/16 to 8"),
         (Pose::from_f32([1.0, 0.0, 0.0, 0.0], [0.0; 3], -1.0).err(), SceneError::Scale, "1/16 to 8"),
+        (Pose::from_f32([1.0, 0.0, 0.0, 0.0], [0.0; 3], f32::NAN).err(), SceneError::Scale, "1/16 to 8"),
     ];
     for (i, (found, expected, words)) in errors.into_iter().enumerate() {
         assert_eq!(found, Some(expected), "{i}");
