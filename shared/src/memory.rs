@@ -29,7 +29,7 @@ use zerocopy::{FromBytes, Immutable, IntoBytes, KnownLayout};
 /// const LAYOUT: Layout = Layout::new(240, 40).vertices(1024).triangles(1024);
 /// static MEMORY: [u64; LAYOUT.words::<Rgb565>()] = [0; LAYOUT.words::<Rgb565>()];
 /// // The shapes of eight lights take 128 bytes.
-/// assert_eq!(LAYOUT.bytes::<Rgb565>(), if cfg!(feature = "light-shapes") { 77_696 } else { 77_568 });
+/// assert_eq!(LAYOUT.bytes::<Rgb565>(), if cfg!(feature = "light-shapes") { 77_688 } else { 77_560 });
 /// ```
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 #[non_exhaustive]
