@@ -29,7 +29,8 @@ impl PixelRect {
     /// The pixels of `rectangle` that belong to a viewport of `size`, no larger than [`crate::MAX_SIDE`].
     pub fn of(rectangle: Rectangle, size: Size) -> Self {
         let range = |start: i32, length: u32, side: u32| {
-            [start, start.saturating_add_unsigned(length)].map(|place| place.clamp(0, side as i32) as u16)
+            // `clamp` would panic at a side that is negative as an `i32`.
+            [start, start.saturating_add_unsigned(length)].map(|place| place.max(0).cast_unsigned().min(side) as u16)
         };
         let Rectangle { top_left, size: extent } = rectangle;
         Self { columns: range(top_left.x, extent.width, size.width), rows: range(top_left.y, extent.height, size.height) }
