@@ -307,6 +307,32 @@ fn lines_are_hidden_by_what_is_in_front() {
     assert!(hidden > 5 && seen > 30, "{hidden} pixels of lines are hidden, {seen} are not");
 }
 
+/// Two triangles have a line in common where one goes through the other. It counts if it is long enough to be seen.
+#[test]
+fn triangles_that_cut_each_other_are_found() {
+    let floor = [[-1.0, 0.0, -1.0], [-1.0, 0.0, 3.0], [3.0, 0.0, -1.0]];
+    let wall = |x: f64, low: f64, high: f64| [[x, low, 0.0], [x + 1.0, low, 0.0], [x, high, 0.0]];
+    let cuts = |triangle: [[f64; 3]; 3]| {
+        let mut mesh = Mesh::default();
+        for (k, [a, b, c]) in [floor, triangle].into_iter().enumerate() {
+            let edge = |to: [f64; 3]| [0, 1, 2].map(|axis| to[axis] - a[axis]);
+            mesh.positions.extend([a, b, c]);
+            mesh.normals.extend([unit(cross(edge(b), edge(c))).unwrap(); 3]);
+            mesh.triangles.push([0, 1, 2].map(|corner: usize| corner + 3 * k));
+        }
+        let look = Look::new(Surface::metal([1.0; 3], [0.1, 0.5, 0.4], 20), View::orbit(Up::Y, 0.0, 0.45, 2.6, 0));
+        look.stream(&quantise(&mesh).0).unwrap().with_neighbours().unwrap().parse().unwrap().cuts.len()
+    };
+    let found = [wall(0.0, -1.0, 1.0), wall(0.0, -1.0, 0.02), wall(0.0, -0.02, 1.0)].map(cuts);
+    assert_eq!(found, [1; 3]);
+    // The line is too short, or the wall stands on the floor, is above it, or beside it.
+    let apart = [wall(0.0, -1.0, 0.0005), wall(0.0, 0.0, 1.0), wall(0.0, 0.1, 1.0), wall(2.5, -1.0, 1.0)].map(cuts);
+    assert_eq!(apart, [0; 4]);
+    // In one plane, and with a common corner.
+    let touching = [[[0.0; 3], [0.5, 0.0, 0.0], [0.0, 0.0, 0.5]], [[-1.0, 0.0, -1.0], [0.5, -1.0, 0.0], [0.5, 1.0, 0.0]]].map(cuts);
+    assert_eq!(touching, [0; 2]);
+}
+
 /// A display of one bit shows a line without gaps: each of its pixels has all of the colour, and they are as many as the light of smooth lines.
 #[test]
 fn lines_of_one_bit_have_no_gaps() {

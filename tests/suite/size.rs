@@ -6,7 +6,7 @@ use microphong::Layout;
 use microphong_sim::{
     bench::size::{baseline, picture},
     chip::{Chip, Core},
-    program::{Entry, FORMATS, Features, Program, SHADERS},
+    program::{self, Entry, FORMATS, Features, Program, SHADERS},
     render::{self, Format},
     shader::Shader,
 };
@@ -126,4 +126,42 @@ fn the_mesh_counts() {
     let output = Command::new(microphong_tests::program()).args(arguments).output().expect("the program");
     let said = String::from_utf8_lossy(&output.stdout);
     assert_eq!(said.matches("\"fits\":false").count(), 2, "{said}");
+}
+
+#[test]
+fn damaged_lines_say_what_is_wrong() {
+    for (line, message) in [
+        ("", "it has no line"),
+        ("cortex-m3,none,binary,gouraud,1", "5 words"),
+        ("cortex-m3,none,binary,gouraud,1,x,1", "`x` is no number"),
+        ("m3,none,binary,gouraud,1,1,1", "no processor m3"),
+        ("cortex-m3,some,binary,gouraud,1,1,1", "no features some"),
+        ("cortex-m3,none,gray4,gouraud,1,1,1", "no pixel format gray4"),
+        ("cortex-m3,none,binary,flat,1,1,1", "no method flat"),
+    ] {
+        let error = format!("{:#}", Entry::all(line).unwrap_err());
+        assert!(error.contains(message), "{error}");
+    }
+}
+
+/// Larger programs and meshes have room on fewer chips, and a format or method without a program counts as a larger one.
+#[test]
+fn chips_take_what_they_have_room_for() {
+    let fits = |features, shader, format, bytes| -> Vec<_> {
+        program::loads(features, shader, format, bytes)
+            .unwrap()
+            .into_iter()
+            .filter(|(_, load)| *load <= 1.0)
+            .map(|(chip, _)| chip.name)
+            .collect()
+    };
+    let names = |shader, format, bytes| fits(Features::Default, shader, format, bytes);
+    assert_eq!(names(Shader::GOURAUD, Format::Binary, [1000, 20_000]).first(), Some(&"samd21"));
+    assert_eq!(names(Shader::GOURAUD, Format::Binary, [210_000, 20_000]).first(), Some(&"stm32f411"));
+    assert_eq!(names(Shader::GOURAUD, Format::Binary, [1000, 300_000]), ["rp2350", "esp32-c3"]);
+    assert_eq!(names(Shader::GOURAUD, Format::Binary, [1000, 600_000]), [""; 0]);
+    let first = |features| fits(features, Shader::GOURAUD, Format::Binary, [15_000, 12_000])[0];
+    assert_eq!(Features::ALL.map(first), ["samd21", "stm32f103"], "features take flash");
+    let [flash, ram] = [300_000, 20_000];
+    assert_eq!(names(Shader::FLAT, Format::Gray4, [flash, ram]), names(Shader::AUTO, Format::Rgb565, [flash, ram]));
 }

@@ -108,28 +108,3 @@ fn cut(one: &Placed, other: &Placed, line: V3) -> Option<[f64; 2]> {
     let (a, b) = (found.next()?, found.next()?);
     Some([a.min(b), a.max(b)])
 }
-
-#[cfg(test)]
-mod tests {
-    use super::*;
-
-    fn triangle(corners: [V3; 3]) -> Placed {
-        Placed::new(corners, 0, 0)
-    }
-
-    #[test]
-    fn lines_are_as_long_as_both_triangles_have_them() {
-        let floor = triangle([[-1.0, 0.0, -1.0], [-1.0, 0.0, 3.0], [3.0, 0.0, -1.0]]);
-        let wall = |low: f64, x: f64| triangle([[x, low, 0.0], [x + 1.0, low, 0.0], [x, 1.0, 0.0]]);
-        // Half of the wall is below the floor, so the line is half as long as its edge.
-        assert!((common(&floor, &wall(-1.0, 0.0)) - 0.5).abs() < 1e-12);
-        assert!((common(&wall(-1.0, 0.0), &floor) - 0.5).abs() < 1e-12);
-        // It stands on the floor, is above it, or beside it.
-        for apart in [wall(0.0, 0.0), wall(0.1, 0.0), wall(-1.0, 2.5)] {
-            assert!(common(&floor, &apart) <= 0.0);
-        }
-        // In one plane, and with a common corner.
-        assert!(common(&floor, &triangle([[0.0, 0.0, 0.0], [0.5, 0.0, 0.0], [0.0, 0.0, 0.5]])) <= 0.0);
-        assert!(common(&floor, &triangle([[-1.0, 0.0, -1.0], [0.5, -1.0, 0.0], [0.5, 1.0, 0.0]])) <= 0.0);
-    }
-}

@@ -7,8 +7,9 @@ mod cuts;
 pub mod image;
 pub mod legend;
 pub mod neighbours;
-pub mod output;
 pub mod program;
 pub mod render;
 pub mod shader;
 pub mod vector;
+
+pub use microphong_output as output;
