@@ -35,9 +35,10 @@ struct Row {
 }
 
 /// What the page says of the figures.
-const NOTE: &str = "All figures are estimates. Instructions are those of a frame with jagged outlines in RGB565. They are within 10 % of counted \
-                    instructions for ordinary scenes: one object of one or a few materials, under one or two far lights. Frames a second are known \
-                    for the RP2040 alone, on which both processors draw. Flash and RAM are those of a whole program without the driver of the display.";
+const NOTE: &str = "All figures are estimates. Instructions are those of a frame with jagged outlines in RGB565, for one object of one or a few materials, \
+                    under one or two far lights, of triangles that are not large. They are within 10 % of counted instructions for the ordinary \
+                    built-in scenes, and further off for some other meshes. Frames a second are known for the RP2040 alone, on which both processors \
+                    draw. Flash and RAM are those of a whole program without the driver of the display.";
 
 /// Estimates what a picture takes.
 pub(crate) fn estimated(stream: &Stream<'_>, settings: &Settings, counts: Option<&Counts>) -> Result<Boards> {

@@ -2,7 +2,7 @@
 
 use crate::{
     boards::{self, Boards},
-    estimate::Counts,
+    estimate::{self, Counts},
     pixels, program,
 };
 use anyhow::{Context, Result};
@@ -10,9 +10,10 @@ use embedded_graphics_core::pixelcolor::Rgb888;
 use microphong::Stream;
 use microphong_compare::{Reference, figures::Spread};
 use microphong_render::{
-    choices::{self, Way},
+    choices::{self, Told, Way},
     program::layout_text,
     render::{Picture, Settings, Style},
+    shader::Shader,
 };
 use serde::Serialize;
 
@@ -57,6 +58,7 @@ struct WayShare {
 pub(crate) fn measured(stream: &Stream<'_>, settings: &Settings, number: u32) -> Result<Measured> {
     let shader = settings.style.shader;
     let told = if shader.keeps_budget() { Some(choices::painted_as::<Rgb888>(*stream, settings, number)?.1) } else { None };
+    let counts = counts(stream, settings, number, told.as_ref())?;
     let share = |way: Way| {
         let count = told.as_ref()?.choices.count(way);
         Some(WayShare { name: way.name(), colour: way.colour(), triangles: count.triangles, pixels: count.pixels })
@@ -66,9 +68,6 @@ pub(crate) fn measured(stream: &Stream<'_>, settings: &Settings, number: u32) ->
         let Spread { max, p99, rmse } = Spread::of(&drawn).context("no pixel shows a triangle")?;
         Ok(Errors { largest: max, most: p99, mean: rmse })
     });
-    let jagged = Settings { style: Style { antialias: false, ..settings.style }, ..*settings };
-    let Picture { stats, .. } = pixels::picture(*stream, &jagged, number)?;
-    let counts = Counts::new(stream, settings.format, stats, told.as_ref().map(|told| told.choices));
     let layout = program::layout(stream, settings)?;
     Ok(Measured {
         errors: errors.map_err(|error| format!("{error:#}")),
@@ -79,6 +78,23 @@ pub(crate) fn measured(stream: &Stream<'_>, settings: &Settings, number: u32) ->
         features: program::features(stream, settings),
         boards: boards::estimated(stream, settings, counts.as_ref())?,
     })
+}
+
+/// The counts of a picture with jagged outlines, whose method has `told` its choices if it keeps a budget; `None` if there are no costs for them.
+fn counts(stream: &Stream<'_>, settings: &Settings, number: u32, told: Option<&Told>) -> Result<Option<Counts>> {
+    if !estimate::holds_for(stream, settings.format) {
+        return Ok(None);
+    }
+    let jagged = Settings { style: Style { antialias: false, ..settings.style }, ..*settings };
+    let Picture { stats, .. } = pixels::picture(*stream, &jagged, number)?;
+    let choices = match told {
+        Some(told) => told.choices,
+        None => {
+            let by_auto = Settings { style: Style { shader: Shader::AUTO, ..jagged.style }, ..jagged };
+            choices::painted_as::<Rgb888>(*stream, &by_auto, number)?.1.choices
+        }
+    };
+    Ok(Counts::new(stream, settings.format, stats, choices))
 }
 
 /// The error of each pixel that shows a triangle, as `microphong compare` measures it.
