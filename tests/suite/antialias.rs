@@ -307,10 +307,10 @@ fn lines_are_hidden_by_what_is_in_front() {
     assert!(hidden > 5 && seen > 30, "{hidden} pixels of lines are hidden, {seen} are not");
 }
 
-/// Two triangles have a line in common where one goes through the other. It counts if it is long enough to be seen.
+/// Two triangles have a line in common where one goes through the other. It counts from a length of 1/512 on.
 #[test]
 fn triangles_that_cut_each_other_are_found() {
-    let floor = [[-1.0, 0.0, -1.0], [-1.0, 0.0, 3.0], [3.0, 0.0, -1.0]];
+    let floor = [[-1.0, 0.0, -1.0], [-1.0, 0.0, 1.5], [1.5, 0.0, -1.0]];
     let wall = |x: f64, low: f64, high: f64| [[x, low, 0.0], [x + 1.0, low, 0.0], [x, high, 0.0]];
     let cuts = |triangle: [[f64; 3]; 3]| {
         let mut mesh = Mesh::default();
@@ -323,11 +323,12 @@ fn triangles_that_cut_each_other_are_found() {
         let look = Look::new(Surface::metal([1.0; 3], [0.1, 0.5, 0.4], 20), View::orbit(Up::Y, 0.0, 0.45, 2.6, 0));
         look.stream(&quantise(&mesh).0).unwrap().with_neighbours().unwrap().parse().unwrap().cuts.len()
     };
-    let found = [wall(0.0, -1.0, 1.0), wall(0.0, -1.0, 0.02), wall(0.0, -0.02, 1.0)].map(cuts);
-    assert_eq!(found, [1; 3]);
-    // The line is too short, or the wall stands on the floor, is above it, or beside it.
-    let apart = [wall(0.0, -1.0, 0.0005), wall(0.0, 0.0, 1.0), wall(0.0, 0.1, 1.0), wall(2.5, -1.0, 1.0)].map(cuts);
-    assert_eq!(apart, [0; 4]);
+    assert_eq!([wall(0.0, -1.0, 1.0), wall(0.0, -0.02, 1.0)].map(cuts), [1; 2]);
+    // The tip of a wall that is one unit wide and deep is above the floor. The line is so long.
+    let tip = |length: f64| wall(0.0, -1.0, length / (1.0 - length));
+    assert_eq!([1.1 / 512.0, 0.9 / 512.0].map(|length| cuts(tip(length))), [1, 0]);
+    // The wall stands on the floor, is above it, or beside it.
+    assert_eq!([wall(0.0, 0.0, 1.0), wall(0.0, 0.1, 1.0), wall(0.6, -1.0, 1.0)].map(cuts), [0; 3]);
     // In one plane, and with a common corner.
     let touching = [[[0.0; 3], [0.5, 0.0, 0.0], [0.0, 0.0, 0.5]], [[-1.0, 0.0, -1.0], [0.5, -1.0, 0.0], [0.5, 1.0, 0.0]]].map(cuts);
     assert_eq!(touching, [0; 2]);
