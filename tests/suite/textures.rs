@@ -111,11 +111,17 @@ fn costs_of_textures_are_those_of_the_guide() {
     let guide = fs::read_to_string(root().join("../docs/guide/costs.md")).unwrap();
     let (_, table) = guide.split_once("| more with a texture |").unwrap();
     println!("instructions a pixel: matt without a texture, more with one; glossy likewise");
-    for (k, shader) in shaders.into_iter().enumerate() {
-        let [[matt, textured], [glossy, both]] = found.each_ref().map(|counts| counts.each_ref().map(|counts| counts[k]));
-        let more = [textured - matt, both - glossy];
-        let line = format!("{:8} {matt:6.1} {:6.1} {glossy:6.1} {:6.1}", shader.name(), more[0], more[1]);
-        println!("{line}");
+    let lines: Vec<_> = shaders
+        .into_iter()
+        .enumerate()
+        .map(|(k, shader)| {
+            let [[matt, textured], [glossy, both]] = found.each_ref().map(|counts| counts.each_ref().map(|counts| counts[k]));
+            let more = [textured - matt, both - glossy];
+            (shader, more, format!("{:8} {matt:6.1} {:6.1} {glossy:6.1} {:6.1}", shader.name(), more[0], more[1]))
+        })
+        .collect();
+    lines.iter().for_each(|(.., line)| println!("{line}"));
+    for (shader, more, line) in lines {
         let row = table.lines().find(|row| row.starts_with(&format!("| `{}` |", shader.name()))).unwrap();
         let told = [2, 3].map(|cell| row.split('|').nth(cell).unwrap().trim().parse::<f64>().unwrap());
         assert!((0..2).all(|k| (more[k] - told[k]).abs() <= SLACK), "{line}, and {told:?} in the guide");

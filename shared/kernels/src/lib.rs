@@ -20,9 +20,9 @@ mod processor;
 #[path = "lit_armv7m.rs"]
 mod lit;
 
-use core::mem::MaybeUninit;
 #[cfg(kernels = "armv7m")]
 use core::mem::offset_of;
+use core::{marker::PhantomData, mem::MaybeUninit};
 use embedded_graphics_core::pixelcolor::{Bgr565, Rgb565};
 
 /// Whether there are kernels for the processor that is compiled for.
@@ -287,15 +287,59 @@ pub type Sums = [[i32; 3]; 3];
 pub type Shares = [[i32; 4]; 3];
 
 /// Where light at a pixel is looked up.
-#[derive(Clone, Copy, Debug)]
+#[derive(Clone, Copy, Debug, Default)]
 pub struct Lookup<'a> {
-    /// Half the reciprocal length of a normal by its square.
-    pub roots: &'a Roots,
+    /// Half the reciprocal length of a normal by its square. Kernels of textures divide nothing, and have none.
+    pub roots: Option<&'a Roots>,
     /// Highlights, if the material has any.
     pub highlights: Option<&'a Highlights>,
     /// The place where a highlight is whole, with 8 fraction bits, from which a quotient is subtracted. For a table of colours without highlights it is the
     /// level of ambient light.
     pub top: i32,
+}
+
+/// A texture, and what a row adds to it. Assembler reads this structure, so the order of its members matters.
+#[derive(Clone, Copy, Debug)]
+#[repr(C)]
+pub struct Texels<'a> {
+    /// Red, green, blue, and a byte that is 0 unless the texel is a hole.
+    palette: *const [u8; 4],
+    /// For rounding and dither, with 22 fraction bits.
+    rounding: [i32; 3],
+    /// The bits of the second place that the number of a row has.
+    rows: u32,
+    length: u32,
+    width: u32,
+    /// Indices of the palette.
+    texels: *const u8,
+    colours: u32,
+    borrowed: PhantomData<&'a ()>,
+}
+
+impl<'a> Texels<'a> {
+    /// A texture whose width and height have these binary logarithms, and what is added to levels of red, green and blue. `None` if it has not as many texels.
+    #[inline]
+    #[must_use]
+    pub fn new(palette: &'a [[u8; 4]], texels: &'a [u8], [width, height]: [u8; 2], rounding: [i32; 3]) -> Option<Self> {
+        let is_whole = width < 16 && height < 16 && texels.len() == 1 << (width + height);
+        is_whole.then(|| Self {
+            palette: palette.as_ptr(),
+            rounding,
+            rows: !(u32::MAX >> height),
+            length: texels.len() as u32,
+            width: 1 << width,
+            texels: texels.as_ptr(),
+            colours: palette.len() as u32,
+            borrowed: PhantomData,
+        })
+    }
+
+    /// What is added to levels.
+    #[inline]
+    #[must_use]
+    pub fn rounding(&self) -> [i32; 3] {
+        self.rounding
+    }
 }
 
 /// The colours of light, for the first row and for the second, in turn.
@@ -319,6 +363,12 @@ pub enum Colours<'a> {
     PaintedLight([&'a Shares; 2]),
     /// [`Self::Summed`], with shares between sums and highlights.
     PaintedSum([&'a Shares; 2]),
+    /// A texture under light in red, green and blue, which highlights follow if there are any. Two quadratics are the place in the texture: columns and rows, as
+    /// fractions of its width and height, in all bits of a word. Light is not divided. All of its bits but the lower 6 are multiplied by channels of 8 bits,
+    /// and highlights are added. A texel that is a hole or has no colour is left out, and so is its depth.
+    Texels([&'a Texels<'a>; 2]),
+    /// [`Self::Texels`] under light without a hue, which is that of green. Red and blue take 63/64 of it, and the same number is added to both.
+    NeutralTexels([&'a Texels<'a>; 2]),
 }
 
 /// A quadratic field: its value at column 0 of the coming row, its step to the next row, the step of that step, its slope, the step of the slope to the
@@ -328,20 +378,25 @@ pub type Quadric = [i32; 6];
 /// Most numerators of a kernel.
 const NUMERATORS: usize = 8;
 
-/// Linear fields, and the quadratic square of a length. A kernel walks and steps as many of the linear fields as it needs, and leaves the others unchanged.
+/// Most quadratics of a kernel.
+const QUADRATICS: usize = 2;
+
+/// Quadratic fields, such as the square of a length, and linear ones. A kernel walks and steps as many of them as it needs, and leaves the others unchanged.
 /// Assembler reads this structure, so the order of its members matters.
 #[derive(Debug)]
 #[repr(C)]
 pub struct Fields<'a> {
-    square: Option<&'a mut Quadric>,
-    count: usize,
+    quadratics: [MaybeUninit<&'a mut Quadric>; QUADRATICS],
     planes: [MaybeUninit<&'a mut Plane>; NUMERATORS],
+    /// The numbers of planes and of quadratics.
+    counts: [usize; 2],
 }
 
 impl Default for Fields<'_> {
     #[inline(always)]
     fn default() -> Self {
-        Self { square: None, count: 0, planes: [const { MaybeUninit::uninit() }; NUMERATORS] }
+        let (quadratics, planes) = ([const { MaybeUninit::uninit() }; QUADRATICS], [const { MaybeUninit::uninit() }; NUMERATORS]);
+        Self { quadratics, planes, counts: [0; 2] }
     }
 }
 
@@ -349,16 +404,21 @@ impl<'a> Fields<'a> {
     /// Adds a numerator. There is room for those of every kernel, and further ones are left out.
     #[inline(always)]
     pub fn add_numerator(&mut self, plane: &'a mut Plane) {
-        if let Some(to) = self.planes.get_mut(self.count) {
+        let [count, _] = &mut self.counts;
+        if let Some(to) = self.planes.get_mut(*count) {
             *to = MaybeUninit::new(plane);
-            self.count += 1;
+            *count += 1;
         }
     }
 
-    /// Sets the square.
+    /// Adds a quadratic, as [`Self::add_numerator`] does.
     #[inline(always)]
-    pub fn set_square(&mut self, square: &'a mut Quadric) {
-        self.square = Some(square);
+    pub fn add_quadratic(&mut self, quadratic: &'a mut Quadric) {
+        let [_, count] = &mut self.counts;
+        if let Some(to) = self.quadratics.get_mut(*count) {
+            *to = MaybeUninit::new(quadratic);
+            *count += 1;
+        }
     }
 }
 
@@ -368,14 +428,16 @@ type LitKernel = unsafe extern "C" fn(&mut Sides, &mut Plane, &mut Fields<'_>, &
 
 // Assembler has these numbers as constants.
 #[cfg(kernels = "armv7m")]
-const _: () = assert!(offset_of!(Fields<'_>, square) == 0 && offset_of!(Fields<'_>, planes) == 8 && size_of::<LitJob>() == 56);
+const _: () = assert!(offset_of!(Fields<'_>, quadratics) == 0 && offset_of!(Fields<'_>, planes) == 8 && size_of::<LitJob>() == 56);
+#[cfg(kernels = "armv7m")]
+const _: () = assert!(offset_of!(Texels<'_>, rows) == 16 && offset_of!(Texels<'_>, colours) == 32);
 
 /// A kernel that computes light at each pixel, and what it reads. There are none for other processors.
 #[derive(Clone, Copy, Debug)]
 pub struct Lit<'a> {
     #[cfg(kernels = "armv7m")]
     kernel: LitKernel,
-    /// The number of numerators that it steps.
+    /// The number of numerators that it steps. There is one quadratic, or two if there is no table of roots.
     #[cfg(kernels = "armv7m")]
     numerators: usize,
     #[cfg(kernels = "armv7m")]
@@ -383,12 +445,12 @@ pub struct Lit<'a> {
     #[cfg(kernels = "armv7m")]
     lookup: Lookup<'a>,
     #[cfg(not(kernels = "armv7m"))]
-    none: (core::convert::Infallible, core::marker::PhantomData<&'a ()>),
+    none: (core::convert::Infallible, PhantomData<&'a ()>),
 }
 
 impl<'a> Lit<'a> {
-    /// The kernel for these colours and so many highlights. `FORMAT` is a [`Format`] as a number. `None` if there is no kernel, or if there are highlights
-    /// without a table of highlights.
+    /// The kernel for these colours and so many highlights. `FORMAT` is a [`Format`] as a number. `None` if there is no kernel, or if it has not the tables that it
+    /// needs.
     #[inline(always)]
     #[must_use]
     pub fn new<const FORMAT: u8>(colours: Colours<'a>, highlights: usize, lookup: Lookup<'a>) -> Option<Self> {
@@ -411,18 +473,27 @@ impl<'a> Lit<'a> {
                 (Colours::PaintedSum(_), 0) => (lit::painted_sums::<FORMAT>, 6),
                 (Colours::PaintedSum(_), 1) => (lit::painted_sums_and_highlight::<FORMAT>, 7),
                 (Colours::PaintedSum(_), 2) => (lit::painted_sums_and_highlights::<FORMAT>, 8),
+                (Colours::Texels(_), 0) => (lit::texels::<FORMAT>, 3),
+                (Colours::Texels(_), 1) => (lit::texels_and_highlight::<FORMAT>, 6),
+                (Colours::NeutralTexels(_), 0) => (lit::neutral_texels::<FORMAT>, 1),
+                (Colours::NeutralTexels(_), 1) => (lit::neutral_texels_and_highlight::<FORMAT>, 2),
                 _ => return None,
             };
             fn address<T>(colours: [&T; 2]) -> [*const (); 2] {
                 colours.map(|colours| core::ptr::from_ref(colours).cast())
             }
+            let has_tables = match colours {
+                Colours::Texels(_) | Colours::NeutralTexels(_) => lookup.roots.is_none(),
+                _ => lookup.roots.is_some() && (highlights == 0 || lookup.highlights.is_some()),
+            };
             let colours = match colours {
                 Colours::Table(tables) => address(tables),
                 Colours::Light(sums) => address(sums),
                 Colours::TwoLights(sums) => address(sums),
                 Colours::Summed(shares) | Colours::PaintedLight(shares) | Colours::PaintedSum(shares) => address(shares),
+                Colours::Texels(texels) | Colours::NeutralTexels(texels) => address(texels),
             };
-            (highlights == 0 || lookup.highlights.is_some()).then_some(Self { kernel, numerators, colours, lookup })
+            has_tables.then_some(Self { kernel, numerators, colours, lookup })
         }
         #[cfg(not(kernels = "armv7m"))]
         {
@@ -451,13 +522,16 @@ impl<'a> Lit<'a> {
         {
             let mut rows = rows;
             let &Self { kernel, numerators, colours, lookup: Lookup { roots, highlights, top } } = self;
-            let Some(lines) = rows.lines(true).filter(|_| fields.square.is_some() && fields.count >= numerators) else { return 0 };
+            let has_all = fields.counts[0] >= numerators && fields.counts[1] > usize::from(roots.is_none());
+            let Some(lines) = rows.lines(true).filter(|_| has_all) else { return 0 };
+            let roots = roots.map_or(core::ptr::null(), |table| table.as_ptr());
             let highlights = highlights.map_or(core::ptr::null(), |table| table.as_ptr());
             let (width, count) = (rows.width, rows.height << COUNTED);
-            let job = LitJob { colours, roots: roots.as_ptr(), highlights, top, width, count, pitch: 2 * width, lines };
+            let job = LitJob { colours, roots, highlights, top, width, count, pitch: 2 * width, lines };
             // SAFETY: all rows lie within both slices, whose addresses are exposed, and columns are compared with the width; an index of 11 bits lies within
-            // the roots, one of 12 bits within the highlights, and one of 9 bits within a table of colours; the colours are those of the kernel; there are
-            // all fields that it steps.
+            // the roots, one of 12 bits within the highlights, and one of 9 bits within a table of colours; the numbers of row and column are less than
+            // height and width of a texture, whose product is the number of texels, and an index is compared with the number of colours; the colours are
+            // those of the kernel, and so are the tables; there are all fields that it steps.
             unsafe { kernel(rows.sides, depth, fields, &job) }
         }
         #[cfg(not(kernels = "armv7m"))]

@@ -7,27 +7,28 @@
 use crate::{COUNTED, Fields, Format, LitJob, Plane, Sides};
 use core::arch::naked_asm;
 
-/// Offset of a numerator: its slope, its value to the left of the row, its value at column 0 of the coming row, and its step to the next row. Three words of the
-/// square precede them.
-const fn numerator(number: usize) -> usize {
-    12 + 16 * number
+/// Offset of the numerators, each: its slope, its value to the left of the row, its value at column 0 of the coming row, and its step to the next row. Three
+/// words of each quadratic precede them: its value to the left of the row, its slope there, and half its bend.
+const fn numerators(seconds: usize) -> usize {
+    12 + 12 * seconds
 }
 
-/// Offset of constants, which follow the numerators: the step of the depth, the way from pixels to depth, width, count, colours of this row and of the next,
-/// the tables of roots and of highlights, and the place in the latter.
-const fn constants(planes: usize) -> usize {
-    numerator(planes)
+/// Offset of constants: the step of the depth, the way from pixels to depth, width, count, colours of this row and of the next, the tables of roots and of
+/// highlights, and the place in the latter. They follow the numerators and, if there is one, the second quadratic at column 0 of the coming row: its value, its
+/// step, its slope, the step of the step, that of the slope.
+const fn constants(planes: usize, seconds: usize) -> usize {
+    numerators(seconds) + 16 * planes + 20 * seconds
 }
 
-/// Offset of what changes from row to row: both sides, depth, the square and its slope, the place in memory. Six words of their steps follow, and the step of
-/// the step of the square.
-const fn changing(planes: usize) -> usize {
-    constants(planes) + 36
+/// Offset of what changes from row to row: both sides, depth, the first quadratic and its slope, the place in memory. Six words of their steps follow, and the
+/// step of the step of the quadratic.
+const fn changing(planes: usize, seconds: usize) -> usize {
+    constants(planes, seconds) + 36
 }
 
 /// Offset of the rows below the turn: their number, the side, and the line.
-const fn turn(planes: usize) -> usize {
-    changing(planes) + 52
+const fn turn(planes: usize, seconds: usize) -> usize {
+    changing(planes, seconds) + 52
 }
 
 /// Evaluates the numerator whose slope and whose value to the left of the row lie at `$from` on the stack. The result is in `$to`, and `$free` is overwritten.
@@ -87,12 +88,45 @@ macro_rules! pack {
     };
 }
 
-/// Defines a kernel for numerators of these numbers. `$pixel` makes the pixel of number `r10` and stores it at `[r0, r10, lsl #1]`. It finds half the reciprocal
-/// length in `r3`, the place in the table of highlights in `r8`, this table in `r9`, the colours of the row in `r12`, and the table of roots in
-/// `lr`. It may overwrite `r3` to `r9` and `lr`, but none of `r0` to `r2` and `r10` to `r12`. If it overwrites `r9` or `lr`, `$reload` loads them again before
-/// each pixel. `r8` is not loaded again: a pixel that overwrites it reads the place from the stack.
+/// Stores the depth of the pixel. `r3` is overwritten.
+macro_rules! store_depth {
+    () => {
+        "lsrs r3, r2, #16\n strh r3, [r1, r10, lsl #1]\n"
+    };
+}
+
+/// Defines a kernel of Phong shading for numerators of these numbers, and the square of a length. `$pixel` is that of [`rows`]. It finds half the reciprocal
+/// length in `r3`, the place in the table of highlights in `r8`, this table in `r9`, and the table of roots in `lr`. If it overwrites `r9` or `lr`, `$reload`
+/// loads them again before each pixel. `r8` is not loaded again: a pixel that overwrites it reads the place from the stack.
 macro_rules! kernel {
     ($(#[$doc:meta])* $name:ident $(<$format:ident>)?, [$($number:literal)*], $reload:expr, $pixel:expr) => {
+        rows!(
+            $(#[$doc])*
+            $name $(<$format>)?,
+            [],
+            [$($number)*],
+            "ldrd lr, r9, [sp, #{constants} + 24]\n ldr r8, [sp, #{constants} + 32]",
+            concat!(
+                store_depth!(),
+                "ldm sp, {{r3-r5}}\n",
+                $reload,
+                "\n mla r4, r5, r10, r4\n mla r3, r4, r10, r3\n",
+                "lsrs r4, r3, #21\n ldr r4, [lr, r4, lsl #2]\n",
+                "ubfx r3, r3, #11, #10\n ubfx r5, r4, #0, #10\n mls r3, r5, r3, r4\n",
+                $pixel,
+            )
+        );
+    };
+}
+
+/// Defines a kernel for one quadratic and for the numerators of these numbers. `$second` is 1 if there is a second quadratic, otherwise there is none. `$enter`
+/// loads what each pixel of a row needs. `$pixel` makes the pixel of number `r10`, and stores it at `[r0, r10, lsl #1]` and its depth by [`store_depth`]. It
+/// goes to 3 before that if the surface has a hole there. It finds the colours of the row in `r12`. It may overwrite `r3` to `r9` and `lr`, but none of `r0`
+/// to `r2` and `r10` to `r12`.
+macro_rules! rows {
+    (
+        $(#[$doc:meta])* $name:ident $(<$format:ident>)?, [$($second:literal)?], [$($number:literal)*], $enter:expr, $pixel:expr
+    ) => {
         $(#[$doc])*
         #[unsafe(naked)]
         pub(crate) unsafe extern "C" fn $name $(<const $format: u8>)?(
@@ -119,8 +153,13 @@ macro_rules! kernel {
                 "str r6, [r12, #48]",
                 "str r9, [sp, #8]",
                 $(
+                    concat!("ldr r4, [r2, #4 * ", $second, "]\n ldm r4, {{r4-r9}}\n str r9, [sp, #8 + 12 * ", $second, "]"),
+                    "add r9, sp, #{constants} - 20\n strd r4, r5, [r9]\n strd r7, r6, [r9, #8]\n str r8, [r9, #16]",
+                )?
+                $(
                     concat!("ldr r4, [r2, #8 + 4 * ", $number, "]\n ldm r4, {{r4-r6}}"),
-                    concat!("str r5, [sp, #12 + 16 * ", $number, "]\n strd r4, r6, [sp, #20 + 16 * ", $number, "]"),
+                    concat!("str r5, [sp, #{numerators} + 16 * ", $number, "]"),
+                    concat!("strd r4, r6, [sp, #{numerators} + 8 + 16 * ", $number, "]"),
                 )*
                 "ldm r3!, {{r4-r11}}",
                 "strd r4, r5, [sp, #{constants} + 16]",
@@ -135,7 +174,7 @@ macro_rules! kernel {
                 "strd r6, r7, [sp, #{turn}]",
                 "strd r8, r9, [sp, #{turn} + 8]",
                 "b 5f",
-                // Both sides, depth, the square and its slope, the place in memory; their steps to the next row; the step of the step of the square.
+                // Both sides, depth, the first quadratic and its slope, the place in memory; their steps to the next row; the step of the quadratic's step.
                 "1: add r12, sp, #{changing}",
                 "ldm r12, {{r0-r11, lr}}",
                 "add r6, r0",
@@ -151,8 +190,17 @@ macro_rules! kernel {
                 "lsrs r1, r1, #21",
                 "sub r12, r0, #1",
                 // Numerators to the left of the row, and on the next row.
-                "add r11, sp, #12",
-                $(concat!("ldm r11!, {{r6-r9}}\n mla r7, r6, r12, r8\n add r8, r9\n strd r7, r8, [sp, #16 + 16 * ", $number, "]"),)*
+                "add r11, sp, #{numerators}",
+                $(
+                    "ldm r11!, {{r6-r9}}\n mla r7, r6, r12, r8\n add r8, r9",
+                    concat!("strd r7, r8, [sp, #{numerators} + 4 + 16 * ", $number, "]"),
+                )*
+                // The second quadratic likewise.
+                $(
+                    "ldm r11, {{r6-r9, lr}}\n add r9, r7\n add r7, r6\n add lr, r8\n stm r11, {{r7, r9, lr}}",
+                    concat!("ldr r9, [sp, #8 + 12 * ", $second, "]\n mul r9, r9, r12\n add r8, r9\n mla r6, r8, r12, r6"),
+                    concat!("add r8, r9\n strd r6, r8, [sp, #12 * ", $second, "]"),
+                )?
                 "subs r10, r1, r0",
                 "ble 4f",
                 "ldrd r11, lr, [sp, #{constants} + 8]",
@@ -164,7 +212,7 @@ macro_rules! kernel {
                 "mla r2, r11, r1, r2",
                 "add r0, r5, r0, lsl #1",
                 "add r1, r0, lr",
-                // The square at the place to the left of the row.
+                // The first quadratic at the place to the left of the row.
                 "ldr lr, [sp, #8]",
                 "mul lr, lr, r12",
                 "add r4, lr",
@@ -172,23 +220,11 @@ macro_rules! kernel {
                 "add r4, lr",
                 "strd r3, r4, [sp]",
                 "ldr r12, [sp, #{constants} + 16]",
-                "ldrd lr, r9, [sp, #{constants} + 24]",
-                "ldr r8, [sp, #{constants} + 32]",
+                $enter,
                 "2: sub r2, r11",
                 "ldrh r3, [r1, r10, lsl #1]",
                 "cmp r3, r2, lsr #16",
                 "bcs 3f",
-                "lsrs r3, r2, #16",
-                "strh r3, [r1, r10, lsl #1]",
-                "ldm sp, {{r3-r5}}",
-                $reload,
-                "mla r4, r5, r10, r4",
-                "mla r3, r4, r10, r3",
-                "lsrs r4, r3, #21",
-                "ldr r4, [lr, r4, lsl #2]",
-                "ubfx r3, r3, #11, #10",
-                "ubfx r5, r4, #0, #10",
-                "mls r3, r5, r3, r4",
                 $pixel,
                 "3: subs r10, #1",
                 "bne 2b",
@@ -222,12 +258,19 @@ macro_rules! kernel {
                 "ldr r5, [r3]",
                 "strd r7, r4, [r5]",
                 "str r8, [r5, #12]",
-                $(concat!("ldr r4, [sp, #20 + 16 * ", $number, "]\n ldr r5, [r3, #8 + 4 * ", $number, "]\n str r4, [r5]"),)*
+                $(
+                    "add r9, sp, #{constants} - 20\n ldm r9, {{r4-r6}}",
+                    concat!("ldr r7, [r3, #4 * ", $second, "]\n strd r4, r5, [r7]\n str r6, [r7, #12]"),
+                )?
+                $(
+                    concat!("ldr r4, [sp, #{numerators} + 8 + 16 * ", $number, "]\n ldr r5, [r3, #8 + 4 * ", $number, "]\n str r4, [r5]"),
+                )*
                 "add sp, #{turn} + 28",
                 "pop {{r4-r11, pc}}",
-                constants = const constants([$($number),*].len()),
-                changing = const changing([$($number),*].len()),
-                turn = const turn([$($number),*].len()),
+                numerators = const numerators(0 $(+ $second)?),
+                constants = const constants([$($number),*].len(), 0 $(+ $second)?),
+                changing = const changing([$($number),*].len(), 0 $(+ $second)?),
+                turn = const turn([$($number),*].len(), 0 $(+ $second)?),
                 one = const 1 << COUNTED,
                 $(
                     format = const $format,
@@ -552,4 +595,93 @@ kernel!(
     [0 1],
     "",
     concat!(quotient!("r4", "r5", 12), quotient!("r5", "r6", 28), highlight!("r5", "r8"), colour!("add r4, r4, r5, lsl #12"))
+);
+
+/// Finds the texel at a place in a texture, and stores the depth. It leaves out the pixel if the texel is a hole or has no colour. `$load` loads both quadratics to `r3` to `r8`, and may overwrite `r9`
+/// and `lr`. The colour is then in `lr`, and what is added to levels of red, green and blue in `r5`, `r6` and `r8`. `r12` is the address of the fifth word
+/// of [`crate::Texels`] here.
+macro_rules! texel {
+    ($load:literal) => {
+        concat!(
+            $load,
+            "mla r4, r5, r10, r4\n mla r3, r4, r10, r3\n mla r7, r8, r10, r7\n mla r6, r7, r10, r6\n",
+            "ldm r12, {{r4, r5, r7, r8, lr}}\n",
+            "and r6, r6, r4\n umull r4, r6, r6, r5\n umlal r4, r6, r3, r7\n ldrb r3, [r8, r6]\n",
+            "ldmdb r12, {{r4-r6, r8}}\n cmp r3, lr\n bcs 3f\n",
+            "ldr lr, [r4, r3, lsl #2]\n lsrs r3, lr, #24\n bne 3f\n",
+            store_depth!(),
+        )
+    };
+}
+
+/// A pixel under light without a hue. `$highlight` may add to `r5` and `r6`, and overwrite `r3`, `r4`, `r7` and `r8`.
+macro_rules! neutral {
+    ($highlight:literal) => {
+        concat!(
+            texel!("ldm sp, {{r3-r9, lr}}\n mla r9, r9, r10, lr\n"),
+            $highlight,
+            "asr r9, r9, #6\n sub r7, r9, r9, asr #6\n",
+            "ubfx r3, lr, #0, #8\n mla r3, r3, r7, r5\n ubfx r4, lr, #8, #8\n mla r4, r4, r9, r6\n",
+            pack!("r4", "ubfx r4, lr, #16, #8\n mla r4, r4, r7, r5\n"),
+        )
+    };
+}
+
+/// What the byte of the texel from bit `$bit` on reflects of the light whose numerator lies at `$light` on the stack, and the highlight whose numerator lies
+/// behind all lights, if there is one. `$more` is added. `$free` and `r9` are overwritten.
+macro_rules! reflected {
+    ($to:literal, $free:literal, $bit:literal, $more:literal, $light:literal $(, $highlight:literal)?) => {
+        concat!(
+            linear!($to, $free, $light),
+            concat!("asr ", $to, ", ", $to, ", #6\n ubfx ", $free, ", lr, #", $bit, ", #8\n"),
+            concat!("mla ", $to, ", ", $to, ", ", $free, ", ", $more, "\n"),
+            $(linear!($free, "r9", $highlight), "add ", $to, ", ", $free, "\n",)?
+        )
+    };
+}
+
+rows!(
+    /// A texture under light without a hue.
+    neutral_texels<FORMAT>,
+    [1],
+    [0],
+    "add r12, #16",
+    neutral!("")
+);
+
+rows!(
+    /// A texture under light without a hue, with a highlight.
+    neutral_texels_and_highlight<FORMAT>,
+    [1],
+    [0 1],
+    "add r12, #16",
+    neutral!("ldrd r4, r8, [sp, #40]\n mla r4, r4, r10, r8\n add r5, r4\n sub r5, r5, r4, asr #6\n add r6, r4\n")
+);
+
+rows!(
+    /// A texture.
+    texels<FORMAT>,
+    [1],
+    [0 1 2],
+    "add r12, #16",
+    concat!(
+        texel!("ldm sp, {{r3-r8}}\n"),
+        reflected!("r3", "r4", 0, "r5", 24),
+        reflected!("r4", "r7", 8, "r6", 40),
+        pack!("r4", reflected!("r4", "r7", 16, "r8", 56)),
+    )
+);
+
+rows!(
+    /// A texture with a highlight.
+    texels_and_highlight<FORMAT>,
+    [1],
+    [0 1 2 3 4 5],
+    "add r12, #16",
+    concat!(
+        texel!("ldm sp, {{r3-r8}}\n"),
+        reflected!("r3", "r4", 0, "r5", 24, 72),
+        reflected!("r4", "r7", 8, "r6", 40, 88),
+        pack!("r4", reflected!("r4", "r7", 16, "r8", 56, 104)),
+    )
 );

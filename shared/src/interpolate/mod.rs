@@ -43,8 +43,7 @@ pub trait Patch: Copy {
     #[inline(always)]
     fn save(&self, _words: &mut [u32]) {}
 
-    /// The number of planes and the number of quadratics, for kernels. Planes come first. It is `None` if the polynomial has other parts or another order; no
-    /// kernel draws it then.
+    /// The number of planes and the number of quadratics, for kernels. It is `None` if the polynomial has other parts; no kernel draws it then.
     const FIELDS: Option<[usize; 2]> = None;
 
     /// The planes of a polynomial that is one field of planes. Others return none.
@@ -53,7 +52,7 @@ pub trait Patch: Copy {
         &mut []
     }
 
-    /// Lends its planes to a kernel as numerators, and its quadratic as the square.
+    /// Lends its planes to a kernel as numerators, and its quadratics.
     #[inline(always)]
     fn lend<'a>(&'a mut self, _fields: &mut Fields<'a>) {}
 
@@ -173,7 +172,7 @@ impl<A: Patch, B: Patch> Patch for (A, B) {
     const WORDS: usize = A::WORDS + B::WORDS;
 
     const FIELDS: Option<[usize; 2]> = match (A::FIELDS, B::FIELDS) {
-        (Some([planes, 0]), Some([more, quadratics])) => Some([planes + more, quadratics]),
+        (Some([planes, quadratics]), Some([more_planes, more_quadratics])) => Some([planes + more_planes, quadratics + more_quadratics]),
         _ => None,
     };
 

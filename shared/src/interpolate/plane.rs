@@ -93,16 +93,10 @@ impl<const CH: usize> Plane<CH> {
         self.0.map(|PlaneRow { c, dx, dy }| [c, dx, dy])
     }
 
-    /// The plane whose values are so many bits further left, or right if the number is negative, modulo 2^32.
+    /// The plane whose values are so many bits further left, modulo 2^32.
     #[inline(always)]
-    pub(crate) fn shifted(self, left: [i32; CH]) -> Self {
-        let shifted = |c: i32, left: i32| if left < 0 { c >> (-left & 31) } else { c << (left & 31) };
-        let mut plane = self;
-        each_channel::<CH>(|k| {
-            let PlaneRow { c, dx, dy } = self.0[k];
-            plane.0[k] = PlaneRow { c: shifted(c, left[k]), dx: shifted(dx, left[k]), dy: shifted(dy, left[k]) };
-        });
-        plane
+    pub(crate) fn shifted(self, left: u32) -> Self {
+        Self(self.0.map(|PlaneRow { c, dx, dy }| PlaneRow { c: c << left, dx: dx << left, dy: dy << left }))
     }
 }
 

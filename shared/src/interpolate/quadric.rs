@@ -133,6 +133,15 @@ impl<const CH: usize> Quadric<CH> {
         }
         quadric
     }
+
+    /// The quadratic whose values are so many bits further left, modulo 2^32.
+    #[inline]
+    pub(crate) fn shifted(self, left: u32) -> Self {
+        Self(self.0.map(|QuadricRow { c, c_down, c_down2, dx, dx_down, dxx }| {
+            let [c, c_down, c_down2, dx, dx_down, dxx] = [c, c_down, c_down2, dx, dx_down, dxx].map(|c| c << left);
+            QuadricRow { c, c_down, c_down2, dx, dx_down, dxx }
+        }))
+    }
 }
 
 /// Fits one channel of a triangle that is not word-sized. It is a function of its own, since a call is a small share of the cost. Fields that are
@@ -177,10 +186,10 @@ impl<const CH: usize> Patch for Quadric<CH> {
 
     const FIELDS: Option<[usize; 2]> = Some([0, CH]);
 
-    #[inline]
+    #[inline(always)]
     fn lend<'a>(&'a mut self, fields: &mut Fields<'a>) {
-        if let Some(row) = self.0.first_mut() {
-            fields.set_square(transmute_mut!(row));
+        for row in &mut self.0 {
+            fields.add_quadratic(transmute_mut!(row));
         }
     }
 

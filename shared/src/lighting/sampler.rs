@@ -1,7 +1,7 @@
 //! Textures at a pixel: the nearest texel, and its colour.
 
 use crate::{
-    arch::product::{HALVES, unsigned_product},
+    arch::product::HALVES,
     features::TEXTURED,
     format::{COSINE, TEXTURE},
     lighting::albedo::Albedo,
@@ -10,6 +10,8 @@ use crate::{
         record::{Colour, TextureCorners},
     },
 };
+use microphong_kernels as kernels;
+use zerocopy::IntoBytes;
 
 /// A value for a mesh with a texture: there is room for none in a program without the feature.
 pub type IfTextured<T> = [T; TEXTURED];
@@ -17,12 +19,11 @@ pub type IfTextured<T> = [T; TEXTURED];
 /// A place in a texture: columns to the right and rows downwards, in widths and heights of it, Q4.12.
 pub(crate) type Place = [i32; 2];
 
-/// A place of which the number of a texel is cut by three operations: the row's number stands in the uppermost bits of the second word, and the column's
-/// number in the first word right below these bits. What stands above it is not used.
+/// A place of which a texel is cut: fractions of width and height, in all bits of a word.
 pub(crate) type Aligned = [u32; 2];
 
 /// Fraction bits of a walked place, which is a sixteenth of [`Place`] in the format of cosines.
-const WALKED: u32 = COSINE - 4;
+pub(crate) const WALKED: u32 = COSINE - 4;
 /// Bits by which a [`Place`] at a corner is shifted to have [`WALKED`] fraction bits.
 pub(crate) const FINER: u32 = WALKED - TEXTURE;
 
@@ -33,6 +34,8 @@ pub struct Sampler<'f> {
     texels: &'f [u8],
     /// The bits of an aligned place that the number of a row takes.
     rows: u32,
+    /// The number of columns.
+    width: u32,
     /// The binary logarithms of width and height.
     size: [u8; 2],
     is_gray: bool,
@@ -54,35 +57,34 @@ impl<'f> Sampler<'f> {
     /// The texture of a mesh, and where its triangles lie in it. Pixel formats of greys take the luma of its colours.
     pub(crate) fn new(texture: MeshTexture<'f>, is_gray: bool) -> (Self, &'f [TextureCorners]) {
         let MeshTexture { palette, texels, size, has_holes, corners } = texture;
-        let [_, height] = size;
-        (Self { palette, texels, rows: !(u32::MAX >> height), size, is_gray, has_holes }, corners)
+        let [width, height] = size;
+        (Self { palette, texels, rows: !(u32::MAX >> height), width: 1 << width, size, is_gray, has_holes }, corners)
     }
 
     /// A walked place with [`WALKED`] fraction bits.
     #[inline(always)]
-    pub(crate) fn aligned(&self, [u, v]: [u32; 2]) -> Aligned {
-        let [_, height] = self.size;
-        [u << (32 - WALKED) >> (height & 31), v << (32 - WALKED)]
+    pub(crate) fn aligned([u, v]: [u32; 2]) -> Aligned {
+        [u << (32 - WALKED), v << (32 - WALKED)]
     }
 
-    /// How many bits to the left places with so many fraction bits are shifted to be [`Aligned`].
-    #[inline]
-    pub(crate) fn alignment(&self, fraction: u32) -> [i32; 2] {
-        let [_, height] = self.size;
-        [32 - fraction as i32 - i32::from(height), 32 - fraction as i32]
+    /// The texture as kernels read it in a row that adds this to levels, see [`kernels::Texels::new`].
+    #[inline(never)]
+    pub(crate) fn in_kernels(&self, rounding: [i32; 3]) -> Option<kernels::Texels<'f>> {
+        let (palette, _) = self.palette.as_bytes().as_chunks();
+        kernels::Texels::new(palette, self.texels, self.size, rounding)
     }
 
     /// The colour of the texel at a place, which is rounded down to whole texels.
     #[inline]
     pub(crate) fn texel(&self, [u, v]: Aligned) -> Colour {
-        let digits = u ^ (u ^ v) & self.rows;
-        // A share of the number of texels, which is a power of two.
+        let [width, height] = self.size;
+        let row = v & self.rows;
+        // Shares of the number of texels and of the width, which are powers of two.
         let texel = if HALVES {
-            let [width, height] = self.size;
-            (digits >> 1 >> (31 - u32::from(width) - u32::from(height))) as usize
+            (row >> 1 >> (31 - u32::from(width) - u32::from(height))) + (u >> 1 >> (31 - u32::from(width)))
         } else {
-            (unsigned_product(digits, self.texels.len() as u32) >> 32) as usize
-        };
+            ((u64::from(row) * self.texels.len() as u64 + u64::from(u) * u64::from(self.width)) >> 32) as u32
+        } as usize;
         // A checked stream has all texels, and all of their colours.
         let colour = self.texels.get(texel).and_then(|&index| self.palette.get(usize::from(index)));
         *colour.unwrap_or(&Colour::new([0; 3]))
@@ -119,7 +121,7 @@ mod tests {
         let at = |u: f64, v: f64| {
             let place = [u, v].map(|c| (c * f64::from(1u32 << WALKED)) as i64 as u32);
             let texture = texture(&palette);
-            let Colour { channels: [red, ..], .. } = texture.texel(texture.aligned(place));
+            let Colour { channels: [red, ..], .. } = texture.texel(Sampler::aligned(place));
             red
         };
         assert_eq!([at(0.0, 0.0), at(0.6, 0.0), at(0.0, 0.3), at(0.99, 0.99)], [0, 1, 2, 7]);

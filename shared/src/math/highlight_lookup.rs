@@ -38,7 +38,7 @@ impl<'a> QuotientLookup<'a> {
     #[inline]
     pub(crate) fn in_kernels(&self, roots: &'a HalfRsqrt) -> Lookup<'a> {
         const { assert!(STEP == 8) };
-        Lookup { roots: roots.knots(), highlights: Some(self.table), top: self.top }
+        Lookup { roots: Some(roots.knots()), highlights: Some(self.table), top: self.top }
     }
 
     /// The node of a numerator, Q2.30: the numerator in steps of the table, Q20.6, rounded down. Domain: within ±2.

@@ -23,7 +23,7 @@ use crate::{
     lighting::{
         albedo::{Albedo, Parts, SHARE},
         material_tables::MaterialTables,
-        sampler::{FINER, IfTextured, Sampler, Textured},
+        sampler::{FINER, IfTextured, Sampler, Textured, WALKED},
     },
     math::vector::{map, zip},
     method::{
@@ -42,10 +42,11 @@ use crate::{
     raster::{
         band::Band,
         canvas::{Canvas, Shaded},
-        pixel_shader::{PixelShader, Ramp},
+        pixel_shader::{PixelShader, Ramp, has_kernels},
     },
     stream::record::Colour,
 };
+use microphong_kernels as kernels;
 
 /// The place in a texture over a triangle.
 #[derive(Clone, Copy, Debug)]
@@ -122,10 +123,10 @@ impl TriangleSetup<'_> {
 
     /// The place in a texture as a plane on the screen.
     #[inline(never)]
-    fn place_by_plane(&self, Textured { sampler, places, .. }: &Textured<'_>) -> Plane<2> {
+    fn place_by_plane(&self, Textured { places, .. }: &Textured<'_>) -> Plane<2> {
         let [[u0, v0], [u1, v1], [u2, v2]] = *places;
         let plane = Nodes::<3, 2, PLACE>::new([[u0, u1, u2], [v0, v1, v2]], MORE).fit(self.gradients);
-        plane.shifted(sampler.alignment(TEXTURE + MORE))
+        plane.shifted(32 - TEXTURE - MORE)
     }
 
     /// Draws the triangle, whose light is `field`, by `shader` with the texture. Returns the number of pixels drawn; `None` if it has no texture.
@@ -246,9 +247,13 @@ where
     }
     let quarter = shading.reflectance.quarter;
     if shading.reflectance.is_neutral() && NeutralTexels::<C>::EXISTS {
-        return one().draw(setup, texture, NeutralTexels::<C>::new(quarter), band);
+        let pixels = NeutralTexels::<C>::neutral(quarter);
+        let rows = pixels.rows(texture.sampler, N);
+        return one().draw(setup, texture, Texels { rows: rows.as_ref(), ..pixels }, band);
     }
-    Light::new(channels(diffuse), channels(specular)).draw(setup, texture, Texels::<C>::new(quarter), band)
+    let pixels = Texels::<C>::new(quarter);
+    let rows = pixels.rows(texture.sampler, N);
+    Light::new(channels(diffuse), channels(specular)).draw(setup, texture, Texels { rows: rows.as_ref(), ..pixels }, band)
 }
 
 /// The light of a triangle at `N` nodes, in `CH` channels: what texels reflect of it, and what is added to that.
@@ -335,9 +340,9 @@ pub(crate) trait Pixels<C, const CH: usize>:
     const MOST: i32 = 511;
 }
 
-impl<C: Pixel> Pixels<C, 3> for Texels<C> {}
+impl<C: Pixel> Pixels<C, 3> for Texels<'_, C> {}
 
-impl<C: Pixel> Pixels<C, 1> for NeutralTexels<C> {}
+impl<C: Pixel> Pixels<C, 1> for NeutralTexels<'_, C> {}
 
 impl<C: Pixel> Pixels<C, 1> for GrayTexels<'_, C> {
     /// Where the table of colours ends.
@@ -376,12 +381,16 @@ impl<const CH: usize> Drawn<CH> for Light<3, CH> {
         let fit = |levels| Nodes::<3, CH, RANGE>::new(levels, CHANNEL - LEVEL).fit(setup.gradients);
         let way = setup.way_of_places(texture);
         if matches!(way, LinearWay::Plane) {
-            let place = || Placed::<_, true> { place: setup.place_by_plane(texture), sampler: texture.sampler };
-            return Some(self.fill(setup, place, fit, pixels, band));
+            let (plane, sampler) = (setup.place_by_plane(texture), texture.sampler);
+            // Kernels walk quadratics.
+            let has_kernel = const { <P as PixelShader<(Colour, [u32; CH])>>::KERNEL.is_some() };
+            if has_kernel {
+                return Some(self.fill(setup, || Texture { place: ByColumn(plane.into()), sampler }, fit, pixels, band));
+            }
+            return Some(self.fill(setup, || Placed::<_, true> { place: plane, sampler }, fit, pixels, band));
         }
-        if let Some(quadratic) = by_quadratic(setup, texture, way) {
-            let place = || Placed::<_, false> { place: ByColumn(quadratic), sampler: texture.sampler };
-            return Some(self.fill(setup, place, fit, pixels, band));
+        if let Some(place) = aligned(setup, texture, way) {
+            return Some(self.fill(setup, || place, fit, pixels, band));
         }
         if PERSPECTIVE && setup.inv_depth().is_some() {
             return self.draw_in_space(setup, texture, pixels, band);
@@ -423,6 +432,14 @@ fn by_quadratic(setup: &TriangleSetup<'_>, texture: &Textured<'_>, way: LinearWa
     Some(fitted(&place_nodes(texture, shares), setup.gradients))
 }
 
+/// Texels whose place is a quadratic on the screen, see [`by_quadratic`].
+type Texture<'f> = Placed<'f, ByColumn<Quadric<2>>, true>;
+
+/// The texels where a quadratic will do for the place.
+fn aligned<'f>(setup: &TriangleSetup<'_>, texture: &Textured<'f>, way: LinearWay) -> Option<Texture<'f>> {
+    Some(Placed { place: ByColumn(by_quadratic(setup, texture, way)?.shifted(32 - WALKED)), sampler: texture.sampler })
+}
+
 /// A level that is multiplied by a channel of 0 to 255 and divided by 256.
 fn scaled(level: i32) -> i32 {
     level + ((level + 128) >> 8)
@@ -430,17 +447,47 @@ fn scaled(level: i32) -> i32 {
 
 /// Makes pixels of interpolated light and of texels.
 #[derive(Clone, Copy)]
-struct Texels<C> {
+struct Texels<'f, C, const N: usize = 3> {
     /// What is added to a level before it is rounded down.
-    rounding: ByTurns<[i32; 3], C>,
+    rounding: ByTurns<[i32; N], C>,
+    /// The texture for kernels, on even rows and on odd ones.
+    rows: Option<&'f [kernels::Texels<'f>; 2]>,
 }
 
-impl<C: Pixel> Texels<C> {
+impl<C: Pixel, const N: usize> Texels<'_, C, N> {
+    /// What kernels add to red, green and blue.
+    fn rounded(rounding: [i32; N]) -> [i32; 3] {
+        [rounding[0], rounding[1], rounding[if N == 3 { 2 } else { 0 }]]
+    }
+
+    /// The texture for kernels, which draw light of so many nodes; `None` if there are none, or none for the format.
+    #[inline]
+    fn rows<'t>(&self, sampler: &Sampler<'t>, nodes: usize) -> Option<[kernels::Texels<'t>; 2]> {
+        let [even, odd] = self.rounding.both().map(Self::rounded);
+        if has_kernels::<C>() && nodes == 3 { Some([sampler.in_kernels(even)?, sampler.in_kernels(odd)?]) } else { None }
+    }
+
+    /// The fields of a kernel for light of which so many levels are walked.
+    const fn fields(levels: usize) -> Option<[usize; 2]> {
+        if has_kernels::<C>() { Some([levels, 2]) } else { None }
+    }
+
+    /// The kernel for so many highlights.
+    #[inline]
+    fn kernel(&self, highlights: usize) -> Option<kernels::Lit<'_>> {
+        let [even, odd] = self.rows?;
+        let rows = if even.rounding() == Self::rounded(self.rounding.now()) { [even, odd] } else { [odd, even] };
+        let colours = if N == 3 { kernels::Colours::Texels(rows) } else { kernels::Colours::NeutralTexels(rows) };
+        C::lit(colours, highlights, kernels::Lookup::default())
+    }
+}
+
+impl<C: Pixel> Texels<'_, C> {
     /// Dithers by rows, see [`Rgb`](crate::raster::pixel_shader::Rgb).
     fn new(quarter: i32) -> Self {
         let rounding = |quarter| zip(steps(C::DEPTH, quarter), C::LEVELS, |step, depth| half_step(depth) + step);
         let [even, odd] = if C::Ramps::CHECKERED { [-quarter, quarter] } else { [0; 2] };
-        Self { rounding: ByTurns::new([rounding(even), rounding(odd)]) }
+        Self { rounding: ByTurns::new([rounding(even), rounding(odd)]), rows: None }
     }
 
     /// The levels that [`scaled`] quarters of light leave on a texel.
@@ -457,44 +504,54 @@ impl<C: Pixel> Texels<C> {
     }
 }
 
-impl<C: Pixel> ByRows for Texels<C> {
+impl<C: Pixel, const N: usize> ByRows for Texels<'_, C, N> {
     #[inline]
     fn step_row(&mut self) {
         self.rounding.step_row();
     }
 }
 
-impl<C: Pixel> PixelShader<(Colour, [u32; 3])> for Texels<C> {
+impl<C: Pixel> PixelShader<(Colour, [u32; 3])> for Texels<'_, C> {
     type Pixel = C;
 
     #[inline]
     fn shade(&self, (texel, light): (Colour, [u32; 3])) -> C {
         self.colour(Self::reflected(light, texel))
     }
+
+    const KERNEL: Option<[usize; 2]> = Self::fields(3);
+
+    #[inline]
+    fn lit(&self) -> Option<kernels::Lit<'_>> {
+        self.kernel(0)
+    }
 }
 
-impl<C: Pixel> PixelShader<(Colour, ([u32; 3], [u32; 3]))> for Texels<C> {
+impl<C: Pixel> PixelShader<(Colour, ([u32; 3], [u32; 3]))> for Texels<'_, C> {
     type Pixel = C;
 
     #[inline]
     fn shade(&self, (texel, (light, highlights)): (Colour, ([u32; 3], [u32; 3]))) -> C {
         self.colour(zip(Self::reflected(light, texel), highlights, |level, highlight| level.wrapping_add(highlight as i32)))
     }
+
+    const KERNEL: Option<[usize; 2]> = Self::fields(6);
+
+    #[inline]
+    fn lit(&self) -> Option<kernels::Lit<'_>> {
+        self.kernel(1)
+    }
 }
 
-/// [`Texels`] under light without a hue, of which one level is walked: that of green.
-#[derive(Clone, Copy)]
-struct NeutralTexels<C> {
-    /// What is added to levels of red and blue, and of green, before they are rounded down.
-    rounding: ByTurns<(i32, i32), C>,
-}
+/// [`Texels`] under light without a hue, of which one level is walked: that of green. Rounding is that of red and blue, and of green.
+type NeutralTexels<'f, C> = Texels<'f, C, 2>;
 
-impl<C: Pixel> NeutralTexels<C> {
+impl<C: Pixel> NeutralTexels<'_, C> {
     /// Whether the format has as many bits of red as of blue, and as many of green or one more.
     const EXISTS: bool = matches!(C::LEVELS, [red, green, blue] if red == blue && (green == red || green == 6 && red == 5));
 
-    fn new(quarter: i32) -> Self {
-        Self { rounding: Texels::<C>::new(quarter).rounding.map(|[red, green, _]| (red, green)) }
+    fn neutral(quarter: i32) -> Self {
+        Self { rounding: Texels::<C>::new(quarter).rounding.map(|[red, green, _]| [red, green]), rows: None }
     }
 
     /// A level of red and blue by that of green. They are as 248 to 252 if green has 6 bits and they have 5: this is off by 2^-12.
@@ -507,7 +564,7 @@ impl<C: Pixel> NeutralTexels<C> {
     /// The colour where a texel reflects this much light, as [`scaled`] quarters, and where these levels of highlights are added.
     #[inline]
     fn colour(&self, quarter: u32, highlight: u32, Colour { channels: [red, green, blue], .. }: Colour) -> C {
-        let (more, more_green) = self.rounding.now();
+        let [more, more_green] = self.rounding.now();
         let (quarter, highlight) = (quarter as i32 >> (CHANNEL - 16), highlight as i32);
         let level = |channel: u8, quarter: i32, more: i32| quarter.wrapping_mul(channel.into()).wrapping_add(more);
         let (outer, more) = (Self::outer(quarter), more.wrapping_add(Self::outer(highlight)));
@@ -515,28 +572,35 @@ impl<C: Pixel> NeutralTexels<C> {
     }
 }
 
-impl<C: Pixel> ByRows for NeutralTexels<C> {
-    #[inline]
-    fn step_row(&mut self) {
-        self.rounding.step_row();
-    }
-}
-
-impl<C: Pixel> PixelShader<(Colour, [u32; 1])> for NeutralTexels<C> {
+impl<C: Pixel> PixelShader<(Colour, [u32; 1])> for NeutralTexels<'_, C> {
     type Pixel = C;
 
     #[inline]
     fn shade(&self, (texel, [light]): (Colour, [u32; 1])) -> C {
         self.colour(light, 0, texel)
     }
+
+    const KERNEL: Option<[usize; 2]> = Self::fields(1);
+
+    #[inline]
+    fn lit(&self) -> Option<kernels::Lit<'_>> {
+        self.kernel(0)
+    }
 }
 
-impl<C: Pixel> PixelShader<(Colour, ([u32; 1], [u32; 1]))> for NeutralTexels<C> {
+impl<C: Pixel> PixelShader<(Colour, ([u32; 1], [u32; 1]))> for NeutralTexels<'_, C> {
     type Pixel = C;
 
     #[inline]
     fn shade(&self, (texel, ([light], [highlight])): (Colour, ([u32; 1], [u32; 1]))) -> C {
         self.colour(light, highlight, texel)
+    }
+
+    const KERNEL: Option<[usize; 2]> = Self::fields(2);
+
+    #[inline]
+    fn lit(&self) -> Option<kernels::Lit<'_>> {
+        self.kernel(1)
     }
 }
 
@@ -596,7 +660,7 @@ impl AtPlace for [u32; 2] {
 
     #[inline]
     fn texel(self, sampler: &Sampler<'_>, aligned: bool) -> Colour {
-        sampler.texel(if aligned { self } else { sampler.aligned(self) })
+        sampler.texel(if aligned { self } else { Sampler::aligned(self) })
     }
 
     #[inline]
@@ -645,6 +709,13 @@ impl<'f, P: Patch<Walker: Walker<Value: AtPlace>>, const ALIGNED: bool> Patch fo
     #[inline(always)]
     fn enter(&self, x: i32) -> Self::Walker {
         Placed { place: self.place.enter(x), sampler: self.sampler }
+    }
+
+    const FIELDS: Option<[usize; 2]> = if ALIGNED { P::FIELDS } else { None };
+
+    #[inline]
+    fn lend<'a>(&'a mut self, fields: &mut kernels::Fields<'a>) {
+        self.place.lend(fields);
     }
 }
 

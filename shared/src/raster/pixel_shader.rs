@@ -42,7 +42,7 @@ pub trait PixelShader<V>: ByRows {
     /// Whether the kernel also fills rows without a depth test.
     const ALONE: bool = false;
 
-    /// The kernel for fields of which one is quadratic.
+    /// The kernel for fields of which one or more are quadratic.
     #[inline(always)]
     fn lit(&self) -> Option<kernels::Lit<'_>> {
         None
@@ -53,6 +53,11 @@ pub trait PixelShader<V>: ByRows {
     fn fill<P: Patch>(&self, _rows: kernels::Rows<'_>, _depth: &mut [Plane], _patch: &mut P) -> Option<u32> {
         None
     }
+}
+
+/// Whether there are kernels that compute light at each pixel of this format.
+pub(crate) const fn has_kernels<C: Pixel>() -> bool {
+    kernels::LIT_AVAILABLE && C::HAS_KERNELS
 }
 
 /// So many planes, if there are kernels for the pixel format and the processor.

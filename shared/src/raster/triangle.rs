@@ -322,7 +322,7 @@ impl<'f> ScreenTriangle<'f> {
             patch.jump(row.wrapping_sub(gradients.row()));
         }
         shader.start_at(row);
-        if !const { matches!(T::KERNEL, Some([_, 1])) } {
+        if !const { matches!(T::KERNEL, Some([_, quadratics]) if quadratics > 0) } {
             return self.fill_and_save(&mut depth, &mut patch, shader, band);
         }
         let mut fields = kernels::Fields::default();

@@ -3,7 +3,7 @@
 use crate::{GUARD, PIXELS, Random, line, plane, say};
 use cortex_m_semihosting::debug;
 use microphong_kernels::{
-    Colours, Fields, Format, Highlights, Lit, Lookup, MAX_HEIGHT, Plane, Quadric, Roots, Rows, Shares, Sides, Sums, Turn,
+    Colours, Fields, Format, Highlights, Lit, Lookup, MAX_HEIGHT, Plane, Quadric, Roots, Rows, Shares, Sides, Sums, Texels, Turn,
 };
 
 /// Cases for each kernel.
@@ -44,6 +44,28 @@ static RAMPS: [[u16; 512]; 2] = {
     tables
 };
 
+static TEXELS: [u8; 256] = {
+    let mut texels = [0; 256];
+    let mut i = 0;
+    while i < texels.len() {
+        texels[i] = (scattered(i) >> 24) as u8;
+        i += 1;
+    }
+    texels
+};
+
+static PALETTE: [[u8; 4]; 256] = {
+    let mut palette = [[0; 4]; 256];
+    let mut i = 0;
+    while i < palette.len() {
+        let [red, green, blue, last] = scattered(i).to_le_bytes();
+        // One colour in eight is a hole.
+        palette[i] = [red, green, blue, if last < 224 { 0 } else { last }];
+        i += 1;
+    }
+    palette
+};
+
 /// What colours are made of, see [`Colours`].
 #[derive(Clone, Copy, Debug, PartialEq)]
 enum Light {
@@ -52,12 +74,14 @@ enum Light {
     Summed,
     Painted,
     PaintedSums,
+    Texels,
+    NeutralTexels,
 }
 
 /// A kernel: the format of channels, the light, and the number of highlights.
 type Kernel = (Format, Light, usize);
 
-const KERNELS: [Kernel; 17] = [
+const KERNELS: [Kernel; 24] = [
     (Format::Rgb, Light::Table, 0),
     (Format::Rgb, Light::Table, 1),
     (Format::Rgb, Light::Lights(1), 0),
@@ -75,18 +99,35 @@ const KERNELS: [Kernel; 17] = [
     (Format::Rgb, Light::PaintedSums, 0),
     (Format::Swapped, Light::PaintedSums, 1),
     (Format::Rgb, Light::PaintedSums, 2),
+    (Format::Rgb, Light::Texels, 0),
+    (Format::Bgr, Light::Texels, 1),
+    (Format::Rgb, Light::NeutralTexels, 0),
+    (Format::Bgr, Light::NeutralTexels, 0),
+    (Format::Swapped, Light::NeutralTexels, 0),
+    (Format::Rgb, Light::NeutralTexels, 1),
+    (Format::Swapped, Light::NeutralTexels, 1),
 ];
 
 /// The number of numerators.
 fn numerators((_, light, highlights): Kernel) -> usize {
     highlights
         + match light {
-            Light::Table => 1,
+            Light::Table | Light::NeutralTexels => 1,
+            Light::Texels => 3 + 2 * highlights,
             Light::Lights(lights) => lights,
             Light::Summed => 3,
             Light::Painted => 4,
             Light::PaintedSums => 6,
         }
+}
+
+/// The number of quadratics.
+fn quadratics((_, light, _): Kernel) -> usize {
+    1 + usize::from(has_texture(light))
+}
+
+fn has_texture(light: Light) -> bool {
+    matches!(light, Light::Texels | Light::NeutralTexels)
 }
 
 /// Pixels or their depth, with guards around them.
@@ -100,7 +141,7 @@ struct State {
     sides: Sides,
     plane: Plane,
     planes: [Plane; 8],
-    square: Quadric,
+    quadratics: [Quadric; 2],
 }
 
 /// What a kernel reads and does not change.
@@ -114,16 +155,21 @@ struct Case {
     top: i32,
     sums: [[Sums; 2]; 2],
     shares: [Shares; 2],
+    /// Binary logarithms of the sides of a texture, and its number of colours.
+    size: [u8; 2],
+    colours: usize,
+    /// What is added to levels on a texture.
+    roundings: [[i32; 3]; 2],
     /// Whether the colours of the second row come first.
     from_second_row: bool,
 }
 
 impl Case {
     fn by_kernel(&self, state: &mut State) -> Option<u32> {
-        let State { pixels, depth, sides, plane, planes, square } = state;
+        let State { pixels, depth, sides, plane, planes, quadratics: squares } = state;
         let mut fields = Fields::default();
         planes.iter_mut().take(numerators(self.kernel)).for_each(|plane| fields.add_numerator(plane));
-        fields.set_square(square);
+        squares.iter_mut().take(quadratics(self.kernel)).for_each(|square| fields.add_quadratic(square));
         self.by_kernel_of((pixels, depth, sides, plane), &mut fields, Some(&HIGHLIGHTS))
     }
 
@@ -137,7 +183,8 @@ impl Case {
         let &Self { width, first, height, turn, top, kernel: (format, light, highlights), .. } = self;
         let (pixels, depth) = (&mut pixels[GUARD..][..PIXELS], &mut depth[GUARD..][..PIXELS]);
         let rows = Rows { pixels, depth, width, first, height, sides, turn };
-        let lookup = Lookup { roots: &ROOTS, highlights: highlights_table, top };
+        let lookup = if has_texture(light) { Lookup::default() } else { Lookup { roots: Some(&ROOTS), highlights: highlights_table, top } };
+        let texels = self.roundings.map(|rounding| Texels::new(&PALETTE[..self.colours], self.texels(), self.size, rounding).unwrap());
         let colours = match light {
             Light::Table => Colours::Table(RAMPS.each_ref()),
             Light::Lights(1) => Colours::Light(self.sums.each_ref().map(|[first, _]| first)),
@@ -145,6 +192,8 @@ impl Case {
             Light::Summed => Colours::Summed(self.shares.each_ref()),
             Light::Painted => Colours::PaintedLight(self.shares.each_ref()),
             Light::PaintedSums => Colours::PaintedSum(self.shares.each_ref()),
+            Light::Texels => Colours::Texels(texels.each_ref()),
+            Light::NeutralTexels => Colours::NeutralTexels(texels.each_ref()),
         };
         let lit = match format {
             Format::Rgb => Lit::new::<{ Format::Rgb as u8 }>(colours, highlights, lookup),
@@ -154,10 +203,18 @@ impl Case {
         lit.map(|lit| if self.from_second_row { lit.from_second_row() } else { lit }.fill(rows, plane, fields))
     }
 
-    /// The pixel of these fields, on an even row of the kernel or on an odd one.
-    fn pixel(&self, planes: &[Plane; 8], square: &Quadric, column: i32, parity: usize) -> u16 {
+    /// The texels of a texture of this size.
+    fn texels(&self) -> &'static [u8] {
+        let [width, height] = self.size;
+        &TEXELS[..1 << (width + height)]
+    }
+
+    /// The pixel of these fields, on an even row of the kernel or on an odd one; `None` if it is left out.
+    fn pixel(&self, planes: &[Plane; 8], quadratics: &[Quadric; 2], column: i32, parity: usize) -> Option<u16> {
         let (format, light, highlights) = self.kernel;
-        let square = square[3].wrapping_add(square[5].wrapping_mul(column)).wrapping_mul(column).wrapping_add(square[0]) as u32;
+        let [square, second] = quadratics.map(|[value, _, _, slope, _, bend]| {
+            slope.wrapping_add(bend.wrapping_mul(column)).wrapping_mul(column).wrapping_add(value) as u32
+        });
         let knot = ROOTS[(square >> 21) as usize];
         let half_reciprocal = knot.wrapping_sub((knot & 0x3FF).wrapping_mul(square >> 11 & 0x3FF)) as i32;
         let mut values = planes.iter().map(|plane| plane[0].wrapping_add(plane[1].wrapping_mul(column)));
@@ -171,7 +228,7 @@ impl Case {
             Light::Table => {
                 let level = over_length(value()).max(0) as u32;
                 let more = if highlights > 0 { (highlight(value()) as u32) << 12 } else { self.top as u32 };
-                return RAMPS[parity][(level.wrapping_add(more) >> 19 & 511) as usize];
+                return Some(RAMPS[parity][(level.wrapping_add(more) >> 19 & 511) as usize]);
             }
             Light::Lights(lights) => {
                 for light in 0..lights {
@@ -181,6 +238,24 @@ impl Case {
                         let light_level = diffuse.wrapping_mul(level).wrapping_add(specular.wrapping_mul(highlight));
                         *channel = channel.wrapping_add(light_level).wrapping_add(if light == 0 { ambient } else { 0 });
                     }
+                }
+            }
+            Light::Texels | Light::NeutralTexels => {
+                let [width, height] = self.size.map(u32::from);
+                let [x, y] = [(square, width), (second, height)].map(|(place, bits)| (u64::from(place) << bits >> 32) as usize);
+                let [colour @ .., hole] = PALETTE[..self.colours].get(usize::from(self.texels()[(y << width) + x]))?;
+                if *hole != 0 {
+                    return None;
+                }
+                let [outer, green, blue] = self.roundings[parity];
+                let is_neutral = light == Light::NeutralTexels;
+                let mut levels = || if is_neutral { [value(); 3] } else { [value(), value(), value()] };
+                let (light, lit) = (levels().map(|level| level >> 6), if highlights > 0 { levels() } else { [0; 3] });
+                let rounding = if is_neutral { [outer, green, outer] } else { [outer, green, blue] };
+                for (k, channel) in channels.iter_mut().enumerate() {
+                    let less = |level: i32| if is_neutral && k != 1 { level.wrapping_sub(level >> 6) } else { level };
+                    let reflected = less(light[k]).wrapping_mul(colour[k].into());
+                    *channel = reflected.wrapping_add(less(lit[k])).wrapping_add(rounding[k]);
                 }
             }
             Light::Painted => {
@@ -207,15 +282,15 @@ impl Case {
         }
         let channel = |k: usize, bits: u32| (channels[k] >> (30 - bits)).clamp(0, (1 << bits) - 1) as u16;
         let [red, green, blue] = [channel(0, 5), channel(1, 6), channel(2, 5)];
-        match format {
+        Some(match format {
             Format::Rgb => red << 11 | green << 5 | blue,
             Format::Bgr => blue << 11 | green << 5 | red,
             Format::Swapped => (red << 11 | green << 5 | blue).swap_bytes(),
-        }
+        })
     }
 
     fn by_loop(&self, state: &mut State) -> u32 {
-        let State { pixels, depth, sides, plane, planes, square } = state;
+        let State { pixels, depth, sides, plane, planes, quadratics: squares } = state;
         let mut count = 0;
         for row in 0..self.height + self.turn.height {
             if row == self.height {
@@ -228,10 +303,12 @@ impl Case {
                 count += (right - left) as u32;
                 for column in (left..right).rev() {
                     let inv_depth = (plane[0].wrapping_add(plane[1].wrapping_mul(column as i32)) as u32 >> 16) as u16;
-                    if inv_depth > depth[start + column] {
+                    let parity = (row as usize + usize::from(self.from_second_row)) % 2;
+                    if inv_depth > depth[start + column]
+                        && let Some(pixel) = self.pixel(planes, squares, column as i32, parity)
+                    {
                         depth[start + column] = inv_depth;
-                        pixels[start + column] =
-                            self.pixel(planes, square, column as i32, (row as usize + usize::from(self.from_second_row)) % 2);
+                        pixels[start + column] = pixel;
                     }
                 }
             }
@@ -239,8 +316,10 @@ impl Case {
             sides[2] = sides[2].wrapping_add(sides[3]);
             plane[0] = plane[0].wrapping_add(plane[2]);
             planes.iter_mut().take(numerators(self.kernel)).for_each(|[value, _, down]| *value = value.wrapping_add(*down));
-            for (to, from) in [(0, 1), (1, 2), (3, 4)] {
-                square[to] = square[to].wrapping_add(square[from]);
+            for square in squares.iter_mut().take(quadratics(self.kernel)) {
+                for (to, from) in [(0, 1), (1, 2), (3, 4)] {
+                    square[to] = square[to].wrapping_add(square[from]);
+                }
             }
         }
         count
@@ -276,20 +355,24 @@ pub(crate) fn compare(random: &mut Random) -> (u32, u32) {
                 top: random.next() as i32 >> 10,
                 sums,
                 shares,
+                size: [random.below(5) as u8, random.below(5) as u8],
+                // Few texels lack a colour in most cases.
+                colours: 256 - random.below(257) as usize * usize::from(number % 4 == 0),
+                roundings: [[0; 3]; 2].map(|rounding: [i32; 3]| rounding.map(|_| random.next() as i32 >> 8)),
                 from_second_row: number % 2 == 1,
             };
             let [l, r] = [line(random, width), line(random, width)];
             // Quotients of small numerators often lie between the ends of tables.
             let shift = 5 * random.below(3);
             let planes = core::array::from_fn(|_| [0; 3].map(|_: i32| random.next() as i32 >> shift));
-            let square = [0; 6].map(|_: i32| random.next() as i32);
+            let quadratics = [[0; 6]; 2].map(|square: Quadric| square.map(|_| random.next() as i32));
             let mut state = State {
                 pixels: [0x5555; PIXELS + 2 * GUARD],
                 depth: [0; PIXELS + 2 * GUARD],
                 sides: [l[0], l[1], r[0], r[1]],
                 plane: plane(random, crate::Kernel::Ramp),
                 planes,
-                square,
+                quadratics,
             };
             let far = random.next() as u16;
             state.depth.iter_mut().step_by(3).for_each(|depth| *depth = far);
@@ -298,7 +381,7 @@ pub(crate) fn compare(random: &mut Random) -> (u32, u32) {
             if count != Some(expected) || state != by_loop {
                 let same = [state.pixels == by_loop.pixels, state.depth == by_loop.depth, state.sides == by_loop.sides];
                 say(format_args!("light by {kernel:?} differs in case {number}: count {count:?} {expected}, same {same:?}"));
-                say(format_args!("{:x?} {:x?}", state.square, by_loop.square));
+                say(format_args!("{:x?} {:x?}", state.quadratics, by_loop.quadratics));
                 debug::exit(debug::EXIT_FAILURE);
             }
             (cases, pixels) = (cases + 1, pixels + expected);
@@ -313,6 +396,9 @@ pub(crate) fn compare(random: &mut Random) -> (u32, u32) {
             top: 0,
             sums: [[[[1; 3]; 3]; 2]; 2],
             shares: [[[1; 4]; 3]; 2],
+            size: [2, 1],
+            colours: 256,
+            roundings: [[1; 3]; 2],
             from_second_row: false,
         };
         let before = State {
@@ -321,7 +407,7 @@ pub(crate) fn compare(random: &mut Random) -> (u32, u32) {
             sides: [1 << 21, 1 << 20, 12 << 21, 1 << 20],
             plane: [1 << 30, 0, 1],
             planes: [[1 << 29; 3]; 8],
-            square: [1 << 29; 6],
+            quadratics: [[1 << 29; 6]; 2],
         };
         for case in [Case { first: 21, ..fits.clone() }, Case { height: MAX_HEIGHT + 1, width: 0, ..fits.clone() }] {
             let mut state = before.clone();
@@ -331,24 +417,23 @@ pub(crate) fn compare(random: &mut Random) -> (u32, u32) {
                 debug::exit(debug::EXIT_FAILURE);
             }
         }
-        for (numerators, has_square) in [(numerators(kernel) - 1, true), (numerators(kernel), false)] {
+        let (all, squares) = (numerators(kernel), quadratics(kernel));
+        for (numerators, quadratics) in [(all - 1, squares), (all, squares - 1)] {
             let mut state = before.clone();
-            let State { pixels, depth, sides, plane, planes, square } = &mut state;
+            let State { pixels, depth, sides, plane, planes, quadratics: squares } = &mut state;
             let mut fields = Fields::default();
             planes.iter_mut().take(numerators).for_each(|plane| fields.add_numerator(plane));
-            if has_square {
-                fields.set_square(square);
-            }
+            squares.iter_mut().take(quadratics).for_each(|square| fields.add_quadratic(square));
             let count = fits.by_kernel_of((pixels, depth, sides, plane), &mut fields, Some(&HIGHLIGHTS));
             if count != Some(0) || state != before {
                 say(format_args!("light by {kernel:?} draws without all fields: count {count:?}"));
                 debug::exit(debug::EXIT_FAILURE);
             }
         }
-        let (mut state, (_, _, highlights)) = (before.clone(), kernel);
+        let (mut state, (_, light, highlights)) = (before.clone(), kernel);
         let State { pixels, depth, sides, plane, .. } = &mut state;
         let count = fits.by_kernel_of((pixels, depth, sides, plane), &mut Fields::default(), None);
-        if count.is_some() != (highlights == 0) || state != before {
+        if count.is_some() != (highlights == 0 || has_texture(light)) || state != before {
             say(format_args!("light by {kernel:?} needs no table of highlights: count {count:?}"));
             debug::exit(debug::EXIT_FAILURE);
         }

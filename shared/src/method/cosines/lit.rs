@@ -5,8 +5,8 @@
 
 use crate::{
     lighting::constant_lights::{Coloured, KERNEL_BITS, Shades, SurfaceColour},
-    pixel::{Pixel, by_rows::ByRows},
-    raster::pixel_shader::PixelShader,
+    pixel::by_rows::ByRows,
+    raster::pixel_shader::{PixelShader, has_kernels},
 };
 use core::marker::PhantomData;
 use microphong_kernels as kernels;
@@ -96,12 +96,11 @@ impl<V, T: Shades<L>, K: AtPixel<V>, L: FromValues<K::Common, K::Values>> PixelS
         self.colours.colour(K::BITS, L::from_values(&common, self.colours.diffuse(), values))
     }
 
-    const KERNEL: Option<[usize; 2]> =
-        if kernels::LIT_AVAILABLE && T::Pixel::HAS_KERNELS && K::IS_QUOTIENT && K::BITS == KERNEL_BITS && T::NUMERATORS > 0 {
-            Some([T::NUMERATORS, 1])
-        } else {
-            None
-        };
+    const KERNEL: Option<[usize; 2]> = if has_kernels::<T::Pixel>() && K::IS_QUOTIENT && K::BITS == KERNEL_BITS && T::NUMERATORS > 0 {
+        Some([T::NUMERATORS, 1])
+    } else {
+        None
+    };
 
     #[inline]
     fn lit(&self) -> Option<kernels::Lit<'_>> {

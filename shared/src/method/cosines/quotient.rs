@@ -31,7 +31,10 @@ use crate::{
         largest,
     },
     pixel::Pixel,
-    raster::{band::Band, pixel_shader::Solid},
+    raster::{
+        band::Band,
+        pixel_shader::{Solid, has_kernels},
+    },
 };
 use microphong_kernels as kernels;
 
@@ -78,7 +81,7 @@ impl<V> AtPixel<(V, [u32; 1])> for Quotient<'_> {
 
     #[inline(always)]
     fn lookup(&self) -> Option<kernels::Lookup<'_>> {
-        Some(kernels::Lookup { roots: self.0.knots(), highlights: None, top: 0 })
+        Some(kernels::Lookup { roots: Some(self.0.knots()), ..Default::default() })
     }
 }
 
@@ -237,7 +240,7 @@ fn draw_painted<C: Pixel, P: Patch<Walker: Walker<Value: SurfaceColour>>>(
     band: &mut Band<'_, C>,
 ) -> Option<u32> {
     // A kernel takes as many instructions where red and blue have the same levels, so it draws the general colours.
-    let neutral = if const { has_kernels::<C>() && P::FIELDS.is_some() } { None } else { tables.neutral_rgb() };
+    let neutral = if const { has_kernels::<C>() && matches!(P::FIELDS, Some([_, 0])) } { None } else { tables.neutral_rgb() };
     match neutral {
         Some(colours) => draw_painted_in(setup, cosines, lengths, colour, colours, tables, band),
         None => draw_painted_in(setup, cosines, lengths, colour, ColouredRgb::of(&tables.coloured()), tables, band),
@@ -269,11 +272,6 @@ where
         (((diffuse, highlight), colour()), square)
     };
     Some(setup.fill(patch, LitShader::of::<Coloured<WithHighlight>>(colours, QuotientWithHighlight(lookup, HalfRsqrt::get())), band))
-}
-
-/// Whether there are kernels that compute light at each pixel of this format.
-pub(super) const fn has_kernels<C: Pixel>() -> bool {
-    kernels::LIT_AVAILABLE && C::HAS_KERNELS
 }
 
 /// Draws as [`draw_in`] does, on a surface with a texture.

@@ -38,15 +38,16 @@ use crate::{
                 self,
                 term::{NearTerm, NearTerms},
             },
-            quotient::{
-                HalfReciprocal, LEVEL, NODE, PIXEL, Quotient, QuotientWithHighlight, RANGE, colour, has_kernels, is_plane, numerator, plane,
-            },
+            quotient::{HalfReciprocal, LEVEL, NODE, PIXEL, Quotient, QuotientWithHighlight, RANGE, colour, is_plane, numerator, plane},
             scale::{Lengths, STEEPEST},
         },
         largest,
     },
     pixel::{Pixel, by_rows::ByRows},
-    raster::{band::Band, pixel_shader::PixelShader},
+    raster::{
+        band::Band,
+        pixel_shader::{PixelShader, has_kernels},
+    },
 };
 use core::cell::Cell;
 
