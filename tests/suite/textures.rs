@@ -4,10 +4,14 @@ use crate::{
     golden::root,
     vertex_colours::{CORE, coloured, difference, lights, parts, picture},
 };
-use embedded_graphics::prelude::Size;
+use embedded_graphics::{
+    pixelcolor::{Rgb565, Rgb666, Rgb888},
+    prelude::Size,
+};
 use microphong::{
     StreamError,
     format::Gain,
+    pixel::{Light, Pixel},
     stream::record::{Colour, HAS_TEXTURE, Material, Mesh, Texture, TextureCorners},
 };
 use microphong_sim::{
@@ -61,22 +65,38 @@ fn one_colour_is_that_of_corners() {
     }
 }
 
-/// A board draws the bits of this computer.
-#[test]
-fn a_board_draws_the_same_bits() {
+/// A board draws the bits of this computer in a pixel format: these scenes with a texture and, if `plain`, without.
+fn draws_the_same_bits<C: Pixel>(format: &str, scenes: &[&str], plain: bool) {
     let board = Board::Mps2An385;
-    let elf = build::styles(board, "rgb565,textures").unwrap();
+    let elf = build::styles(board, &format!("{format},textures")).unwrap();
     let colours = [[255; 3], [0; 3], [200, 90, 30], [20, 220, 250], [90, 90, 90]];
-    for scene in ["teapot", "dodecahedron"] {
+    for scene in scenes {
         for (kind, lights) in lights() {
-            let stream = textured(Records { lights, ..parts(scene) }, [5, 4], &colours, anywhere).as_bytes().to_vec();
-            for shader in CORE {
-                let scene = format!("{scene}, {kind} light, {}", shader.name());
-                let request = Request { board, scene, stream: stream.clone(), firmware_stream: None, shader, frames: 1, antialias: false };
-                verify::checksums(&request, &elf).unwrap();
+            let records = || Records { lights: lights.clone(), ..parts(scene) };
+            let mut streams = vec![textured(records(), [5, 4], &colours, anywhere)];
+            if plain {
+                streams.push(records().written().unwrap());
+            }
+            for (stream, shader) in streams.iter().flat_map(|stream| CORE.map(|shader| (stream.as_bytes().to_vec(), shader))) {
+                let scene = format!("{scene}, {kind} light, {}, {format}", shader.name());
+                let request = Request { board, scene, stream, firmware_stream: None, shader, frames: 1, antialias: false };
+                verify::checksums::<C>(&request, &elf).unwrap();
             }
         }
     }
+}
+
+#[test]
+fn a_board_draws_the_same_bits() {
+    draws_the_same_bits::<Rgb565>("rgb565", &["teapot", "dodecahedron"], false);
+}
+
+/// Kernels draw pixels of four bytes, too.
+#[test]
+fn a_board_draws_the_same_bits_in_other_formats() {
+    draws_the_same_bits::<Rgb888>("rgb888", &["teapot"], true);
+    draws_the_same_bits::<Rgb666>("rgb666", &["teapot"], true);
+    draws_the_same_bits::<Light<5, 6, 5>>("light-rgb565", &["teapot"], true);
 }
 
 /// A white material with this much of highlights.

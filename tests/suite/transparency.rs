@@ -233,7 +233,7 @@ fn a_board_draws_the_same_bits() {
         for shader in CORE {
             let (scene, stream) = (format!("{name}, {}", shader.name()), stream.as_bytes().to_vec());
             let request = Request { board, scene, stream, firmware_stream: None, shader, frames: 1, antialias: false };
-            verify::checksums(&request, &elf).unwrap();
+            verify::checksums::<Rgb565>(&request, &elf).unwrap();
         }
     }
 }

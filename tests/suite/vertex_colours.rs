@@ -1,6 +1,6 @@
 //! Colours at the corners of triangles.
 
-use embedded_graphics::prelude::Size;
+use embedded_graphics::{pixelcolor::Rgb565, prelude::Size};
 use microphong::{
     format::Gain,
     stream::record::{Colour, CornerColours, HAS_COLOURS, Light, Material},
@@ -120,7 +120,7 @@ fn a_board_draws_the_same_bits() {
             for shader in CORE {
                 let scene = format!("{scene}, {kind} light, {}", shader.name());
                 let request = Request { board, scene, stream: stream.clone(), firmware_stream: None, shader, frames: 1, antialias: false };
-                verify::checksums(&request, &elf).unwrap();
+                verify::checksums::<Rgb565>(&request, &elf).unwrap();
             }
         }
     }

@@ -222,16 +222,17 @@ struct How<'s> {
     colours: bool,
 }
 
-/// Runs `elf`, a program that shows no picture and draws colours at corners, and compares what it logs of its frames with what the host draws.
+/// Runs `elf`, a program that shows no picture and draws colours at corners, and compares what it logs of its frames with what the host draws in this pixel
+/// format.
 ///
 /// # Errors
 /// When a checksum or a count differs, the program does not get that far, or the stream cannot be drawn.
-pub fn checksums(request: &Request, elf: &Path) -> Result<()> {
+pub fn checksums<C: Pixel>(request: &Request, elf: &Path) -> Result<()> {
     let Request { board, shader, frames, .. } = request;
     let bytes = prepare(&request.stream, *shader, *frames)?;
     let stream = StreamBytes::from(bytes.as_slice());
     let how = How { shaders: &[*shader], frames: usize::from(*frames), antialias: false, colours: true };
-    let host = draw(*board, stream.parse()?, how).context("the board cannot draw this stream")?;
+    let host = draw_in::<C, C>(*board, stream.parse()?, how).context("the board cannot draw this stream")?;
     let log = clocked(*board, &Elf::read(elf)?.with_stream(&bytes)?, *frames)?;
     for (number, picture) in host.iter().enumerate() {
         let expected = picture.line(number);

@@ -5,7 +5,7 @@
 //! negative steps to the next column or colours, `r10` the place behind the last row above the turn, `r11` the width, `r12` the place of the row, and `lr`
 //! the number of pixels that are done.
 
-use crate::{Channels, Format, Job, Plane, Sides};
+use crate::{Channels, FormatParts, Job, Plane, Sides};
 use core::arch::naked_asm;
 
 /// Saves `r4` to `r11`, behind the given arguments.
@@ -112,7 +112,12 @@ macro_rules! end_one_field {
 
 /// Fills rows by a table of 1024 colours, whose index is the upper 10 bits of a level.
 #[unsafe(naked)]
-pub(crate) unsafe extern "C" fn ramp(sides: &mut Sides, depth: &mut Plane, level: &mut Plane, job: &Job<*const u16>) -> u32 {
+pub(crate) unsafe extern "C" fn ramp<const BYTES: u8, const BITS: u8>(
+    sides: &mut Sides,
+    depth: &mut Plane,
+    level: &mut Plane,
+    job: &Job<*const ()>,
+) -> u32 {
     naked_asm!(
         save!("r0-r2"),
         job!(),
@@ -191,7 +196,11 @@ pub(crate) unsafe extern "C" fn ramp(sides: &mut Sides, depth: &mut Plane, level
 
 /// [`ramp`] without a depth test.
 #[unsafe(naked)]
-pub(crate) unsafe extern "C" fn ramp_alone(sides: &mut Sides, level: &mut Plane, job: &Job<*const u16>) -> u32 {
+pub(crate) unsafe extern "C" fn ramp_alone<const BYTES: u8, const BITS: u8>(
+    sides: &mut Sides,
+    level: &mut Plane,
+    job: &Job<*const ()>,
+) -> u32 {
     naked_asm!(
         begin_one_field!(),
         "1:",
@@ -213,7 +222,7 @@ pub(crate) unsafe extern "C" fn ramp_alone(sides: &mut Sides, level: &mut Plane,
 
 /// Fills rows with one of two colours in turn, in the halves of a word; the lower one first.
 #[unsafe(naked)]
-pub(crate) unsafe extern "C" fn solid(sides: &mut Sides, depth: &mut Plane, job: &Job<u32>) -> u32 {
+pub(crate) unsafe extern "C" fn solid<const BYTES: u8, C>(sides: &mut Sides, depth: &mut Plane, job: &Job<C>) -> u32 {
     naked_asm!(
         begin_one_field!(),
         "1:",
@@ -243,7 +252,7 @@ pub(crate) unsafe extern "C" fn solid(sides: &mut Sides, depth: &mut Plane, job:
 
 /// [`solid`] without a depth test.
 #[unsafe(naked)]
-pub(crate) unsafe extern "C" fn solid_alone(sides: &mut Sides, job: &Job<u32>) -> u32 {
+pub(crate) unsafe extern "C" fn solid_alone<const BYTES: u8, C>(sides: &mut Sides, job: &Job<C>) -> u32 {
     naked_asm!(
         save!("r0"),
         "mov r3, r1",
@@ -289,7 +298,7 @@ pub(crate) unsafe extern "C" fn solid_alone(sides: &mut Sides, job: &Job<u32>) -
 /// Fills rows by three levels of 8 integer and 22 fraction bits, which are clamped and packed. All steps to the next column are in `r8` to `r11`, the way
 /// from pixels to depth in `r12`, and the place to the left of the row in `lr`; what other kernels have there lies on the stack.
 #[unsafe(naked)]
-pub(crate) unsafe extern "C" fn channels<const FORMAT: u8>(
+pub(crate) unsafe extern "C" fn channels<const FORMAT: u32>(
     sides: &mut Sides,
     depth: &mut Plane,
     levels: &mut [Plane; 3],
@@ -409,7 +418,7 @@ pub(crate) unsafe extern "C" fn channels<const FORMAT: u8>(
         "lsrs r1, r5, #24",
         "lsrs r2, r6, #25",
         "8:",
-        ".if {format} == {bgr}",
+        ".if {blue_at}",
         "lsls r2, r2, #11",
         ".else",
         "lsls r0, r0, #11",
@@ -417,7 +426,7 @@ pub(crate) unsafe extern "C" fn channels<const FORMAT: u8>(
         "lsls r1, r1, #5",
         "orrs r0, r1",
         "orrs r0, r2",
-        ".if {format} == {swapped}",
+        ".if {is_swapped}",
         "rev16 r0, r0",
         ".endif",
         "strh r0, [r7]",
@@ -491,8 +500,7 @@ pub(crate) unsafe extern "C" fn channels<const FORMAT: u8>(
         "str r2, [r1, #24]",
         "add sp, #88",
         restore!(12),
-        format = const FORMAT,
-        bgr = const Format::Bgr as u8,
-        swapped = const Format::Swapped as u8,
+        blue_at = const FormatParts::of(FORMAT).lowest[2],
+        is_swapped = const FormatParts::of(FORMAT).is_swapped,
     )
 }

@@ -11,6 +11,10 @@
 
 #![no_std]
 
+#[macro_use]
+#[cfg(kernels = "armv7m")]
+mod pack;
+
 #[cfg_attr(kernels = "armv6m", path = "armv6m.rs")]
 #[cfg_attr(kernels = "armv7m", path = "armv7m.rs")]
 #[cfg(kernels)]
@@ -23,10 +27,13 @@ mod lit;
 #[cfg(kernels = "armv7m")]
 use core::mem::offset_of;
 use core::{marker::PhantomData, mem::MaybeUninit};
-use embedded_graphics_core::pixelcolor::{Bgr565, Rgb565};
+use embedded_graphics_core::pixelcolor::{Bgr565, Rgb565, Rgb666, Rgb888};
 
-/// Whether there are kernels for the processor that is compiled for.
+/// Whether there are kernels for pixels of two bytes on the processor that is compiled for.
 pub const AVAILABLE: bool = cfg!(kernels);
+
+/// Whether there are kernels for pixels of four bytes.
+pub const WORDS_AVAILABLE: bool = cfg!(kernels = "armv7m");
 
 /// Whether kernels of [`Lit`] are among them.
 pub const LIT_AVAILABLE: bool = cfg!(kernels = "armv7m");
@@ -37,8 +44,14 @@ pub type Sides = [u32; 4];
 /// A linear field: its value at column 0 of the coming row, and its steps to the next column and to the next row. All additions wrap.
 pub type Plane = [i32; 3];
 
-/// Colours of a table, whose index is the upper 10 bits of a level.
-pub type Table = [u16; 1024];
+/// Colours of a table of [`Colours::Table`].
+#[derive(Clone, Copy, Debug)]
+pub enum Entries<'a> {
+    /// Colours of two bytes.
+    Halfwords(&'a [u16; 512]),
+    /// Colours of four bytes.
+    Words(&'a [u32; 512]),
+}
 
 /// Largest number of rows above the turn, and below it.
 pub const MAX_HEIGHT: u32 = (1 << 9) - 1;
@@ -64,9 +77,7 @@ pub struct Turn {
 /// whose right column lies beyond the width is left out.
 #[derive(Debug)]
 pub struct Rows<'a> {
-    /// The pixels of the band, row by row.
-    pub pixels: &'a mut [u16],
-    /// The inverse depth of each of them. It is not used without a depth test.
+    /// The inverse depth of the pixels of the band, row by row. It is not used without a depth test.
     pub depth: &'a mut [u16],
     /// Columns of the band. If there are none, nothing is drawn, and the sides have no meaning afterwards.
     pub width: usize,
@@ -80,15 +91,59 @@ pub struct Rows<'a> {
     pub turn: Turn,
 }
 
-/// The order of channels of 5, 6 and 5 bits in a pixel.
+/// The order of channels in a pixel.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub enum Format {
-    /// Red in the upper bits.
+pub enum Order {
+    /// Red in the upper bits, then green, then blue.
     Rgb,
-    /// Blue in the upper bits.
+    /// Blue in the upper bits, then green, then red.
     Bgr,
-    /// Red in the upper bits, and the upper byte first in memory.
+    /// Red in the upper bits, and the upper byte of two first in memory.
     Swapped,
+    /// Nine bits of each channel: blue from bit 0 on, red from bit 11 and green from bit 20. A display shows fewer bits. All of them are ones where light is
+    /// full, and the bits below are zeros.
+    Light,
+}
+
+/// The format of a pixel as one number, for which kernels are compiled: the order of channels, and the bits of red, green and blue that a display
+/// shows. A pixel has four bytes if the bits do not fit into two.
+#[must_use]
+pub const fn format(order: Order, [red, green, blue]: [u32; 3]) -> u32 {
+    assert!(red <= 8 && green <= 8 && blue <= 8, "a channel has at most eight bits");
+    (order as u32) << 12 | red << 8 | green << 4 | blue
+}
+
+/// What [`format`] puts together, as assembler reads it.
+#[cfg(kernels)]
+#[cfg_attr(kernels = "armv6m", expect(dead_code, reason = "kernels of Armv6-M draw channels of 5, 6 and 5 bits alone"))]
+struct FormatParts {
+    /// Bytes of a pixel.
+    bytes: u32,
+    /// Bits of each channel, and the lowest of them.
+    bits: [u32; 3],
+    lowest: [u32; 3],
+    /// The bits that a display shows of light; zeros if the pixel is one of the display.
+    shown: [u32; 3],
+    is_swapped: u32,
+}
+
+#[cfg(kernels)]
+impl FormatParts {
+    const fn of(format: u32) -> Self {
+        let shown @ [red, green, blue] = [format >> 8 & 15, format >> 4 & 15, format & 15];
+        let order = format >> 12;
+        if order == Order::Light as u32 {
+            return Self { bytes: 4, bits: [9; 3], lowest: [11, 20, 0], shown, is_swapped: 0 };
+        }
+        let lowest = if order == Order::Bgr as u32 { [0, red, red + green] } else { [green + blue, blue, 0] };
+        let bytes = if red + green + blue > 16 { 4 } else { 2 };
+        Self { bytes, bits: shown, lowest, shown: [0; 3], is_swapped: (order == Order::Swapped as u32) as u32 }
+    }
+
+    /// Whether there are kernels for pixels of so many bytes on this processor.
+    const fn exists(&self) -> bool {
+        self.bytes == 2 || WORDS_AVAILABLE
+    }
 }
 
 /// Evaluates a block on processors with kernels, otherwise it is `None`.
@@ -111,29 +166,55 @@ mod sealed {
     pub trait Sealed {}
 }
 
-/// A pixel of two bytes, of which each value is valid.
-pub trait Halfword: sealed::Sealed {}
+/// A pixel that is a number of two bytes or four, of which each value is valid.
+pub trait Number: sealed::Sealed {
+    /// The number.
+    type Number: Stored;
+}
 
-/// Pixels of embedded-graphics, each around one `u16`.
-macro_rules! halfword {
-    ($($pixel:ty),*) => {
+/// Pixels of embedded-graphics, each around one number.
+macro_rules! number {
+    ($($pixel:ty, $number:ty;)*) => {
         $(
             impl sealed::Sealed for $pixel {}
-            impl Halfword for $pixel {}
-            const _: () = assert!(size_of::<$pixel>() == size_of::<u16>() && align_of::<$pixel>() == align_of::<u16>());
+            impl Number for $pixel {
+                type Number = $number;
+            }
+            const _: () = assert!(size_of::<$pixel>() == size_of::<$number>() && align_of::<$pixel>() == align_of::<$number>());
             // A type with invalid values would store `None` as one of them.
             const _: () = assert!(size_of::<Option<$pixel>>() > size_of::<$pixel>());
         )*
     };
 }
 
-halfword!(Rgb565, Bgr565);
+number! {
+    Rgb565, u16;
+    Bgr565, u16;
+    Rgb666, u32;
+    Rgb888, u32;
+}
 
 /// The pixels as numbers.
 #[must_use]
-pub fn halfwords<C: Halfword>(pixels: &mut [C]) -> &mut [u16] {
-    // SAFETY: a pixel is a structure around one `u16`, in which any value is valid; size and alignment are asserted above.
+pub fn numbers<C: Number>(pixels: &mut [C]) -> &mut [C::Number] {
+    // SAFETY: a pixel is a structure around one number, in which any value is valid; size and alignment are asserted above.
     unsafe { core::slice::from_raw_parts_mut(pixels.as_mut_ptr().cast(), pixels.len()) }
+}
+
+/// A pixel as kernels store it: a number of two bytes or of four.
+pub trait Stored: sealed::Sealed {
+    /// Its bytes.
+    const BYTES: u8;
+}
+
+impl sealed::Sealed for u16 {}
+impl Stored for u16 {
+    const BYTES: u8 = 2;
+}
+
+impl sealed::Sealed for u32 {}
+impl Stored for u32 {
+    const BYTES: u8 = 4;
 }
 
 /// A count has a number of pixels in so many lower bits, and a number of rows above. They hold twice [`MAX_HEIGHT`] rows of [`MAX_WIDTH`] pixels.
@@ -144,9 +225,9 @@ const COUNTED: u32 = 22;
 #[cfg(kernels)]
 #[repr(C)]
 struct Lines {
-    /// The place to the left of the first pixel. Pixels are counted from 1.
-    left: *mut u16,
-    /// Bytes from a pixel to its depth.
+    /// The place to the left of the first pixel, or of its depth if a pixel has four bytes and there is a depth test. Pixels are counted from 1.
+    left: *mut u8,
+    /// Bytes from a pixel to its depth, or to a pixel of four bytes from twice the address of its depth.
     delta: usize,
     /// Rows below the turn, from bit [`COUNTED`] on.
     rest: u32,
@@ -161,7 +242,7 @@ struct Lines {
 struct Job<T> {
     /// Rows above the turn, from bit [`COUNTED`] on.
     count: u32,
-    /// Bytes in a row of the band.
+    /// Bytes from a row of the band to the next one, at [`Lines::left`].
     pitch: usize,
     colours: T,
     lines: Lines,
@@ -201,16 +282,22 @@ struct Channels {
 impl Rows<'_> {
     /// Where the rows lie; `None` if not all of them lie within the slices, or there are too many.
     #[inline(always)]
-    fn lines(&mut self, has_depth: bool) -> Option<Lines> {
+    fn lines<T: Stored>(&mut self, pixels: &mut [T], has_depth: bool) -> Option<Lines> {
         let (first, above, below) = (self.first, self.height, self.turn.height);
         // If so, no sum or product below has overflowed.
         let is_small = first <= MAX_FIRST && above | below <= MAX_HEIGHT && self.width <= MAX_WIDTH;
         let end = self.width.wrapping_mul(first.wrapping_add(above).wrapping_add(below) as usize);
-        let fits = end <= self.pixels.len() && (!has_depth || end <= self.depth.len());
-        let (pixels, depth) = (self.pixels.as_mut_ptr(), self.depth.as_mut_ptr());
+        let fits = end <= pixels.len() && (!has_depth || end <= self.depth.len());
+        let (pixels, depth): (*mut u8, *mut u8) = (pixels.as_mut_ptr().cast(), self.depth.as_mut_ptr().cast());
+        let (at_pixels, at_depth) = (pixels.expose_provenance(), depth.expose_provenance());
+        let (start, size, delta): (_, usize, _) = if T::BYTES == 4 && has_depth {
+            (depth, 2, at_pixels.wrapping_sub(at_depth.wrapping_mul(2)))
+        } else {
+            (pixels, T::BYTES.into(), at_depth.wrapping_sub(at_pixels))
+        };
         (is_small && fits).then(|| Lines {
-            left: pixels.wrapping_add(self.width.wrapping_mul(first as usize)).wrapping_sub(1),
-            delta: depth.expose_provenance().wrapping_sub(pixels.expose_provenance()),
+            left: start.wrapping_add(size.wrapping_mul(self.width.wrapping_mul(first as usize))).wrapping_sub(size),
+            delta,
             rest: self.turn.height << COUNTED,
             side: u32::from(self.turn.is_right) << 2,
             line: self.turn.line,
@@ -219,52 +306,93 @@ impl Rows<'_> {
 
     /// What a kernel reads.
     #[inline(always)]
-    fn job<T>(&mut self, has_depth: bool, colours: T) -> Option<Job<T>> {
-        let lines = self.lines(has_depth)?;
-        Some(Job { count: self.height << COUNTED, pitch: 2 * self.width, colours, lines })
+    fn job<T: Stored, C>(&mut self, pixels: &mut [T], has_depth: bool, colours: C) -> Option<Job<C>> {
+        let lines = self.lines(pixels, has_depth)?;
+        let size = if has_depth { 2 } else { T::BYTES.into() };
+        Some(Job { count: self.height << COUNTED, pitch: size * self.width, colours, lines })
     }
 }
 
-/// Fills `rows` by a level and a table of colours, with a depth test if there is a plane of depth. Returns the number of pixels between the sides. If the
-/// rows do not lie within the slices, or a limit is exceeded, it is 0, and nothing changes. Returns `None` if there is no kernel for this processor.
+/// Fills `rows` of the pixels of a band by a level and a table of colours, with a depth test if there is a plane of depth. The index is as many upper bits of
+/// the level as the table takes. Returns the number of pixels between the sides. If the rows do not lie within the slices, or a limit is exceeded, it is 0, and
+/// nothing changes. Returns `None` if there is no kernel for this processor, or for a table of this length.
 #[inline(always)]
 #[must_use]
-pub fn ramp(rows: Rows<'_>, depth: Option<&mut Plane>, level: &mut Plane, colours: &Table) -> Option<u32> {
-    by_kernel!((rows, depth, level, colours), {
-        // SAFETY: all rows lie within both slices, whose addresses are exposed; columns are compared with the width; and an index of 10 bits lies within the
+pub fn ramp<T: Stored, const N: usize>(
+    pixels: &mut [T],
+    rows: Rows<'_>,
+    depth: Option<&mut Plane>,
+    level: &mut Plane,
+    colours: &[T; N],
+) -> Option<u32> {
+    by_kernel!((rows, pixels, depth, level, colours), {
+        // SAFETY: all rows lie within both slices, whose addresses are exposed; columns are compared with the width; and an index of so many bits lies within the
         // table.
-        match (rows.job(depth.is_some(), colours.as_ptr()), depth) {
-            (Some(job), Some(depth)) => unsafe { processor::ramp(rows.sides, depth, level, &job) },
-            (Some(job), None) => unsafe { processor::ramp_alone(rows.sides, level, &job) },
-            (None, _) => 0,
+        macro_rules! fill {
+            ($bytes:literal, $bits:literal) => {
+                match (rows.job(pixels, depth.is_some(), colours.as_ptr().cast()), depth) {
+                    (Some(job), Some(depth)) => unsafe { processor::ramp::<$bytes, $bits>(rows.sides, depth, level, &job) },
+                    (Some(job), None) => unsafe { processor::ramp_alone::<$bytes, $bits>(rows.sides, level, &job) },
+                    (None, _) => 0,
+                }
+            };
+        }
+        match (T::BYTES, N) {
+            (2, 1024) => fill!(2, 10),
+            #[cfg(kernels = "armv7m")]
+            (4, 512) => fill!(4, 9),
+            #[cfg(kernels = "armv7m")]
+            (4, 1024) => fill!(4, 10),
+            _ => return None,
         }
     })
 }
 
-/// Fills `rows` with two colours in turn, the first one in the first row, with a depth test if there is a plane of depth. Returns what [`ramp`] does.
-#[inline(always)]
-#[must_use]
-pub fn solid(rows: Rows<'_>, depth: Option<&mut Plane>, colours: [u16; 2]) -> Option<u32> {
-    by_kernel!((rows, depth, colours), {
-        let [first, second] = colours;
-        // SAFETY: all rows lie within both slices, whose addresses are exposed, and columns are compared with the width.
-        match (rows.job(depth.is_some(), u32::from(first) | u32::from(second) << 16), depth) {
-            (Some(job), Some(depth)) => unsafe { processor::solid(rows.sides, depth, &job) },
-            (Some(job), None) => unsafe { processor::solid_alone(rows.sides, &job) },
-            (None, _) => 0,
-        }
-    })
-}
-
-/// Fills `rows` by levels of red, green and blue with 22 fraction bits, with a depth test. Levels are clamped to 8 bits and rounded down to 5, 6 and 5
-/// bits. In the first row 8, 4 and 8 times `raise` is added to them; in the next row it is subtracted. `FORMAT` is a [`Format`] as a number. Returns what
+/// Fills `rows` of the pixels of a band with two colours in turn, the first one in the first row, with a depth test if there is a plane of depth. Returns what
 /// [`ramp`] does.
 #[inline(always)]
 #[must_use]
-pub fn channels<const FORMAT: u8>(rows: Rows<'_>, depth: &mut Plane, levels: &mut [Plane; 3], raise: i32) -> Option<u32> {
-    const { assert!(FORMAT <= Format::Swapped as u8) };
-    by_kernel!((rows, depth, levels, raise), {
-        let Some(lines) = rows.lines(true) else { return Some(0) };
+pub fn solid<T: Stored>(pixels: &mut [T], rows: Rows<'_>, depth: Option<&mut Plane>, colours: [u32; 2]) -> Option<u32> {
+    by_kernel!((rows, pixels, depth, colours), {
+        let [first, second] = colours;
+        // SAFETY: all rows lie within both slices, whose addresses are exposed, and columns are compared with the width.
+        macro_rules! fill {
+            ($bytes:literal, $colours:expr) => {
+                match (rows.job(pixels, depth.is_some(), $colours), depth) {
+                    (Some(job), Some(depth)) => unsafe { processor::solid::<$bytes, _>(rows.sides, depth, &job) },
+                    (Some(job), None) => unsafe { processor::solid_alone::<$bytes, _>(rows.sides, &job) },
+                    (None, _) => 0,
+                }
+            };
+        }
+        match T::BYTES {
+            2 => fill!(2, first | second << 16),
+            #[cfg(kernels = "armv7m")]
+            _ => fill!(4, [first ^ second, first]),
+            #[cfg(not(kernels = "armv7m"))]
+            _ => return None,
+        }
+    })
+}
+
+/// Fills `rows` of the pixels of a band by levels of red, green and blue with 22 fraction bits, with a depth test. Levels are clamped to 8 bits and rounded down
+/// to the bits of a channel. In the first row `raise` is added to each of them, multiplied by the step of the channel; in the next row it is subtracted.
+/// Nothing is added to light. `FORMAT` is a [`format`]. Returns what [`ramp`] does.
+#[inline(always)]
+#[must_use]
+pub fn channels<const FORMAT: u32, T: Stored>(
+    pixels: &mut [T],
+    rows: Rows<'_>,
+    depth: &mut Plane,
+    levels: &mut [Plane; 3],
+    raise: i32,
+) -> Option<u32> {
+    by_kernel!((rows, pixels, depth, levels, raise), {
+        const { assert!(FormatParts::of(FORMAT).bytes == T::BYTES as u32) };
+        if !const { FormatParts::of(FORMAT).exists() } {
+            return None;
+        }
+        let Some(lines) = rows.lines(pixels, true) else { return Some(0) };
         let (width, raise) = (rows.width, raise.wrapping_neg());
         let job = Channels { pitch: 2 * width, width, raise, count: rows.height << COUNTED, lines };
         // SAFETY: all rows lie within both slices, whose addresses are exposed, and columns are compared with the width.
@@ -285,6 +413,20 @@ pub type Sums = [[i32; 3]; 3];
 /// Four numbers for each of red, green and blue. The first is for rounding and dither, and the second is ambient light, both with 22 fraction bits.
 /// On a surface of one colour the first is not used, and the second includes it. Factors follow, see [`Colours`].
 pub type Shares = [[i32; 4]; 3];
+
+impl<'a> From<&'a [u16; 512]> for Entries<'a> {
+    #[inline(always)]
+    fn from(colours: &'a [u16; 512]) -> Self {
+        Self::Halfwords(colours)
+    }
+}
+
+impl<'a> From<&'a [u32; 512]> for Entries<'a> {
+    #[inline(always)]
+    fn from(colours: &'a [u32; 512]) -> Self {
+        Self::Words(colours)
+    }
+}
 
 /// Where light at a pixel is looked up.
 #[derive(Clone, Copy, Debug, Default)]
@@ -352,7 +494,7 @@ impl<'a> Texels<'a> {
 pub enum Colours<'a> {
     /// A table of colours, for a light, and a highlight if there is one. A negative level counts as 0. With a highlight, 2^12 times the entry of the table is
     /// added to the level; entries include ambient light. Without one, [`Lookup::top`] is added. Bits 19 to 27 of the sum are the index of a colour.
-    Table([&'a [u16; 512]; 2]),
+    Table([Entries<'a>; 2]),
     /// One light, and its highlight if it has one.
     Light([&'a Sums; 2]),
     /// Two lights. The highlight of each follows its light. If only one of them has a highlight, it is the first.
@@ -367,7 +509,8 @@ pub enum Colours<'a> {
     /// fractions of its width and height, in all bits of a word. Light is not divided. All of its bits but the lower 6 are multiplied by channels of 8 bits,
     /// and highlights are added. A texel that is a hole or has no colour is left out, and so is its depth.
     Texels([&'a Texels<'a>; 2]),
-    /// [`Self::Texels`] under light without a hue, which is that of green. Red and blue take 63/64 of it, and the same number is added to both.
+    /// [`Self::Texels`] under light without a hue, which is that of green. Red and blue take 63/64 of it if they have fewer bits, and the same number
+    /// is added to both.
     NeutralTexels([&'a Texels<'a>; 2]),
 }
 
@@ -442,6 +585,9 @@ pub struct Lit<'a> {
     numerators: usize,
     #[cfg(kernels = "armv7m")]
     colours: [*const (); 2],
+    /// Bytes of a pixel.
+    #[cfg(kernels = "armv7m")]
+    bytes: u32,
     #[cfg(kernels = "armv7m")]
     lookup: Lookup<'a>,
     #[cfg(not(kernels = "armv7m"))]
@@ -449,17 +595,16 @@ pub struct Lit<'a> {
 }
 
 impl<'a> Lit<'a> {
-    /// The kernel for these colours and so many highlights. `FORMAT` is a [`Format`] as a number. `None` if there is no kernel, or if it has not the tables that it
+    /// The kernel for these colours and so many highlights. `FORMAT` is a [`format`]. `None` if there is no kernel, or if it has not the tables that it
     /// needs.
     #[inline(always)]
     #[must_use]
-    pub fn new<const FORMAT: u8>(colours: Colours<'a>, highlights: usize, lookup: Lookup<'a>) -> Option<Self> {
-        const { assert!(FORMAT <= Format::Swapped as u8) };
+    pub fn new<const FORMAT: u32>(colours: Colours<'a>, highlights: usize, lookup: Lookup<'a>) -> Option<Self> {
         #[cfg(kernels = "armv7m")]
         {
             let (kernel, numerators): (LitKernel, usize) = match (colours, highlights) {
-                (Colours::Table(_), 0) => (lit::level, 1),
-                (Colours::Table(_), 1) => (lit::level_and_highlight, 2),
+                (Colours::Table(_), 0) => (lit::level::<FORMAT>, 1),
+                (Colours::Table(_), 1) => (lit::level_and_highlight::<FORMAT>, 2),
                 (Colours::Light(_), 0) => (lit::light::<FORMAT>, 1),
                 (Colours::Light(_), 1) => (lit::light_and_highlight::<FORMAT>, 2),
                 (Colours::TwoLights(_), 0) => (lit::lights::<FORMAT>, 2),
@@ -482,18 +627,21 @@ impl<'a> Lit<'a> {
             fn address<T>(colours: [&T; 2]) -> [*const (); 2] {
                 colours.map(|colours| core::ptr::from_ref(colours).cast())
             }
+            let bytes = const { FormatParts::of(FORMAT).bytes };
             let has_tables = match colours {
                 Colours::Texels(_) | Colours::NeutralTexels(_) => lookup.roots.is_none(),
                 _ => lookup.roots.is_some() && (highlights == 0 || lookup.highlights.is_some()),
             };
             let colours = match colours {
-                Colours::Table(tables) => address(tables),
+                Colours::Table([Entries::Halfwords(even), Entries::Halfwords(odd)]) if bytes == 2 => address([even, odd]),
+                Colours::Table([Entries::Words(even), Entries::Words(odd)]) if bytes == 4 => address([even, odd]),
+                Colours::Table(_) => return None,
                 Colours::Light(sums) => address(sums),
                 Colours::TwoLights(sums) => address(sums),
                 Colours::Summed(shares) | Colours::PaintedLight(shares) | Colours::PaintedSum(shares) => address(shares),
                 Colours::Texels(texels) | Colours::NeutralTexels(texels) => address(texels),
             };
-            has_tables.then_some(Self { kernel, numerators, colours, lookup })
+            has_tables.then_some(Self { kernel, numerators, colours, bytes, lookup })
         }
         #[cfg(not(kernels = "armv7m"))]
         {
@@ -514,16 +662,16 @@ impl<'a> Lit<'a> {
         self
     }
 
-    /// Fills `rows`, with a depth test. The numerators of `fields` are those that [`Colours`] tells. Returns the number of pixels between the sides. If the
-    /// rows do not lie within the slices, a limit is exceeded, or a field is missing, it is 0, and nothing changes.
+    /// Fills `rows` of the pixels of a band, with a depth test. The numerators of `fields` are those that [`Colours`] tells. Returns the number of pixels between the sides. If the
+    /// rows do not lie within the slices, a limit is exceeded, a field is missing, or pixels have other bytes, it is 0, and nothing changes.
     #[must_use]
-    pub fn fill(&self, rows: Rows<'_>, depth: &mut Plane, fields: &mut Fields<'_>) -> u32 {
+    pub fn fill<T: Stored>(&self, pixels: &mut [T], rows: Rows<'_>, depth: &mut Plane, fields: &mut Fields<'_>) -> u32 {
         #[cfg(kernels = "armv7m")]
         {
             let mut rows = rows;
-            let &Self { kernel, numerators, colours, lookup: Lookup { roots, highlights, top } } = self;
+            let &Self { kernel, numerators, colours, bytes, lookup: Lookup { roots, highlights, top } } = self;
             let has_all = fields.counts[0] >= numerators && fields.counts[1] > usize::from(roots.is_none());
-            let Some(lines) = rows.lines(true).filter(|_| has_all) else { return 0 };
+            let Some(lines) = rows.lines(pixels, true).filter(|_| has_all && bytes == u32::from(T::BYTES)) else { return 0 };
             let roots = roots.map_or(core::ptr::null(), |table| table.as_ptr());
             let highlights = highlights.map_or(core::ptr::null(), |table| table.as_ptr());
             let (width, count) = (rows.width, rows.height << COUNTED);
@@ -536,7 +684,7 @@ impl<'a> Lit<'a> {
         }
         #[cfg(not(kernels = "armv7m"))]
         {
-            let _ = (rows, depth, fields);
+            let _ = (pixels, rows, depth, fields);
             match self.none.0 {}
         }
     }

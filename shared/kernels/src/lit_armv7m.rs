@@ -4,7 +4,7 @@
 //! below the turn. `r10` counts the pixels of a row down to 1. The polynomials are functions of this count. They are evaluated only at pixels that pass the
 //! depth test, so a hidden pixel takes six instructions.
 
-use crate::{COUNTED, Fields, Format, LitJob, Plane, Sides};
+use crate::{COUNTED, Fields, FormatParts, LitJob, Plane, Sides};
 use core::arch::naked_asm;
 
 /// Offset of the numerators, each: its slope, its value to the left of the row, its value at column 0 of the coming row, and its step to the next row. Three
@@ -68,22 +68,13 @@ macro_rules! cosine {
 macro_rules! pack {
     ($green:literal, $blue:expr) => {
         concat!(
-            "usat r3, #5, r3, asr #25\n",
-            concat!("usat ", $green, ", #6, ", $green, ", asr #24\n"),
-            ".if {format} == {bgr}\n",
-            concat!("orr r3, r3, ", $green, ", lsl #5\n"),
-            ".else\n",
-            concat!("orr r3, ", $green, ", r3, lsl #6\n"),
-            ".endif\n",
+            "usat r3, #{red}, r3, asr #30 - {red}\n",
+            concat!("usat ", $green, ", #{green}, ", $green, ", asr #30 - {green}\n"),
+            join!("r3", $green),
             $blue,
-            concat!("usat ", $green, ", #5, ", $green, ", asr #25\n"),
-            ".if {format} == {bgr}\n",
-            concat!("orr r3, r3, ", $green, ", lsl #11\n"),
-            ".else\n",
-            concat!("orr r3, ", $green, ", r3, lsl #5\n"),
-            ".endif\n",
-            ".if {format} == {swapped}\n rev16 r3, r3\n .endif\n",
-            "strh r3, [r0, r10, lsl #1]",
+            concat!("usat ", $green, ", #{blue}, ", $green, ", asr #30 - {blue}\n"),
+            add_blue!("r3", $green),
+            store!("r3", "[r0, r10", "]"),
         )
     };
 }
@@ -99,10 +90,10 @@ macro_rules! store_depth {
 /// length in `r3`, the place in the table of highlights in `r8`, this table in `r9`, and the table of roots in `lr`. If it overwrites `r9` or `lr`, `$reload`
 /// loads them again before each pixel. `r8` is not loaded again: a pixel that overwrites it reads the place from the stack.
 macro_rules! kernel {
-    ($(#[$doc:meta])* $name:ident $(<$format:ident>)?, [$($number:literal)*], $reload:expr, $pixel:expr) => {
+    ($(#[$doc:meta])* $name:ident, [$($number:literal)*], $reload:expr, $pixel:expr) => {
         rows!(
             $(#[$doc])*
-            $name $(<$format>)?,
+            $name,
             [],
             [$($number)*],
             "ldrd lr, r9, [sp, #{constants} + 24]\n ldr r8, [sp, #{constants} + 32]",
@@ -120,22 +111,23 @@ macro_rules! kernel {
 }
 
 /// Defines a kernel for one quadratic and for the numerators of these numbers. `$second` is 1 if there is a second quadratic, otherwise there is none. `$enter`
-/// loads what each pixel of a row needs. `$pixel` makes the pixel of number `r10`, and stores it at `[r0, r10, lsl #1]` and its depth by [`store_depth`]. It
+/// loads what each pixel of a row needs. `$pixel` makes the pixel of number `r10`, and stores it by [`store`] and its depth by [`store_depth`]. It
 /// goes to 3 before that if the surface has a hole there. It finds the colours of the row in `r12`. It may overwrite `r3` to `r9` and `lr`, but none of `r0`
 /// to `r2` and `r10` to `r12`.
 macro_rules! rows {
     (
-        $(#[$doc:meta])* $name:ident $(<$format:ident>)?, [$($second:literal)?], [$($number:literal)*], $enter:expr, $pixel:expr
+        $(#[$doc:meta])* $name:ident, [$($second:literal)?], [$($number:literal)*], $enter:expr, $pixel:expr
     ) => {
         $(#[$doc])*
         #[unsafe(naked)]
-        pub(crate) unsafe extern "C" fn $name $(<const $format: u8>)?(
+        pub(crate) unsafe extern "C" fn $name<const FORMAT: u32>(
             sides: &mut Sides,
             depth: &mut Plane,
             fields: &mut Fields<'_>,
             job: &LitJob,
         ) -> u32 {
             naked_asm!(
+                uses_format!(),
                 "push {{r0-r2, r4-r11, lr}}",
                 "sub sp, #{turn} + 16",
                 "ldm r0, {{r4-r7}}",
@@ -210,8 +202,8 @@ macro_rules! rows {
                 "str lr, [sp, #{constants} + 12]",
                 "ldrd r11, lr, [sp, #{constants}]",
                 "mla r2, r11, r1, r2",
-                "add r0, r5, r0, lsl #1",
-                "add r1, r0, lr",
+                ".if {bytes} == 4\n add r1, r5, r0, lsl #1\n add r0, lr, r1, lsl #1",
+                ".else\n add r0, r5, r0, lsl #1\n add r1, r0, lr\n .endif",
                 // The first quadratic at the place to the left of the row.
                 "ldr lr, [sp, #8]",
                 "mul lr, lr, r12",
@@ -272,11 +264,17 @@ macro_rules! rows {
                 changing = const changing([$($number),*].len(), 0 $(+ $second)?),
                 turn = const turn([$($number),*].len(), 0 $(+ $second)?),
                 one = const 1 << COUNTED,
-                $(
-                    format = const $format,
-                    bgr = const Format::Bgr as u8,
-                    swapped = const Format::Swapped as u8,
-                )?
+                bytes = const FormatParts::of(FORMAT).bytes,
+                red = const FormatParts::of(FORMAT).bits[0],
+                green = const FormatParts::of(FORMAT).bits[1],
+                blue = const FormatParts::of(FORMAT).bits[2],
+                red_at = const FormatParts::of(FORMAT).lowest[0],
+                green_at = const FormatParts::of(FORMAT).lowest[1],
+                blue_at = const FormatParts::of(FORMAT).lowest[2],
+                red_shown = const FormatParts::of(FORMAT).shown[0],
+                green_shown = const FormatParts::of(FORMAT).shown[1],
+                blue_shown = const FormatParts::of(FORMAT).shown[2],
+                is_swapped = const FormatParts::of(FORMAT).is_swapped,
             )
         }
     };
@@ -284,7 +282,7 @@ macro_rules! rows {
 
 kernel!(
     /// One light, in three channels.
-    light<FORMAT>,
+    light,
     [0],
     "",
     concat!(
@@ -298,7 +296,7 @@ kernel!(
 
 kernel!(
     /// One light with a highlight, in three channels.
-    light_and_highlight<FORMAT>,
+    light_and_highlight,
     [0 1],
     "",
     concat!(
@@ -314,7 +312,7 @@ kernel!(
 
 kernel!(
     /// Two lights, in three channels.
-    lights<FORMAT>,
+    lights,
     [0 1],
     "",
     concat!(
@@ -330,7 +328,7 @@ kernel!(
 
 kernel!(
     /// Two lights, the first with a highlight, in three channels.
-    lights_and_highlight<FORMAT>,
+    lights_and_highlight,
     [0 1 2],
     "ldr lr, [sp, #{constants} + 24]",
     concat!(
@@ -352,7 +350,7 @@ kernel!(
 
 kernel!(
     /// Two lights with highlights, in three channels.
-    lights_and_highlights<FORMAT>,
+    lights_and_highlights,
     [0 1 2 3],
     "ldrd lr, r9, [sp, #{constants} + 24]",
     concat!(
@@ -457,7 +455,7 @@ macro_rules! two_highlights {
 
 kernel!(
     /// Sums of lights.
-    sums<FORMAT>,
+    sums,
     [0 1 2],
     "ldr lr, [sp, #{constants} + 24]",
     concat!(sums!(), sum!("r3", "r4", 0), sum!("r4", "r5", 16), pack!("r4", sum!("r4", "r6", 32)))
@@ -465,7 +463,7 @@ kernel!(
 
 kernel!(
     /// Sums of lights with a highlight.
-    sums_and_highlight<FORMAT>,
+    sums_and_highlight,
     [0 1 2 3],
     "ldr lr, [sp, #{constants} + 24]",
     concat!(
@@ -482,7 +480,7 @@ kernel!(
 
 kernel!(
     /// Sums of lights with two highlights.
-    sums_and_highlights<FORMAT>,
+    sums_and_highlights,
     [0 1 2 3 4],
     "ldr lr, [sp, #{constants} + 24]",
     concat!(
@@ -498,7 +496,7 @@ kernel!(
 
 kernel!(
     /// Sums of lights on a surface whose colour is walked.
-    painted_sums<FORMAT>,
+    painted_sums,
     [0 1 2 3 4 5],
     "ldr lr, [sp, #{constants} + 24]",
     concat!(
@@ -511,7 +509,7 @@ kernel!(
 
 kernel!(
     /// Sums of lights with a highlight on a surface whose colour is walked.
-    painted_sums_and_highlight<FORMAT>,
+    painted_sums_and_highlight,
     [0 1 2 3 4 5 6],
     "ldrd lr, r9, [sp, #{constants} + 24]",
     concat!(
@@ -528,7 +526,7 @@ kernel!(
 
 kernel!(
     /// Sums of lights with two highlights on a surface whose colour is walked.
-    painted_sums_and_highlights<FORMAT>,
+    painted_sums_and_highlights,
     [0 1 2 3 4 5 6 7],
     "ldrd lr, r9, [sp, #{constants} + 24]",
     concat!(
@@ -544,7 +542,7 @@ kernel!(
 
 kernel!(
     /// One light on a surface whose colour is walked.
-    painted_light<FORMAT>,
+    painted_light,
     [0 1 2 3],
     "ldr lr, [sp, #{constants} + 24]",
     concat!(
@@ -558,7 +556,7 @@ kernel!(
 
 kernel!(
     /// One light with a highlight on a surface whose colour is walked.
-    painted_light_and_highlight<FORMAT>,
+    painted_light_and_highlight,
     [0 1 2 3 4],
     "ldrd lr, r9, [sp, #{constants} + 24]",
     concat!(
@@ -577,7 +575,13 @@ kernel!(
 /// The colour of a level in `r4`, to which `$add` adds.
 macro_rules! colour {
     ($add:literal) => {
-        concat!("bic r4, r4, r4, asr #31\n", $add, "\n ubfx r4, r4, #19, #9\n ldrh r4, [r12, r4, lsl #1]\n strh r4, [r0, r10, lsl #1]")
+        concat!(
+            "bic r4, r4, r4, asr #31\n",
+            $add,
+            "\n ubfx r4, r4, #19, #9\n",
+            load!("r4", "[r12, r4", "]"),
+            store!("r4", "[r0, r10", "]"),
+        )
     };
 }
 
@@ -616,11 +620,11 @@ macro_rules! texel {
 
 /// A pixel under light without a hue. `$highlight` may add to `r5` and `r6`, and overwrite `r3`, `r4`, `r7` and `r8`.
 macro_rules! neutral {
-    ($highlight:literal) => {
+    ($highlight:expr) => {
         concat!(
             texel!("ldm sp, {{r3-r9, lr}}\n mla r9, r9, r10, lr\n"),
             $highlight,
-            "asr r9, r9, #6\n sub r7, r9, r9, asr #6\n",
+            "asr r9, r9, #6\n .if {red} == {green}\n mov r7, r9\n .else\n sub r7, r9, r9, asr #6\n .endif\n",
             "ubfx r3, lr, #0, #8\n mla r3, r3, r7, r5\n ubfx r4, lr, #8, #8\n mla r4, r4, r9, r6\n",
             pack!("r4", "ubfx r4, lr, #16, #8\n mla r4, r4, r7, r5\n"),
         )
@@ -642,7 +646,7 @@ macro_rules! reflected {
 
 rows!(
     /// A texture under light without a hue.
-    neutral_texels<FORMAT>,
+    neutral_texels,
     [1],
     [0],
     "add r12, #16",
@@ -651,16 +655,19 @@ rows!(
 
 rows!(
     /// A texture under light without a hue, with a highlight.
-    neutral_texels_and_highlight<FORMAT>,
+    neutral_texels_and_highlight,
     [1],
     [0 1],
     "add r12, #16",
-    neutral!("ldrd r4, r8, [sp, #40]\n mla r4, r4, r10, r8\n add r5, r4\n sub r5, r5, r4, asr #6\n add r6, r4\n")
+    neutral!(concat!(
+        "ldrd r4, r8, [sp, #40]\n mla r4, r4, r10, r8\n add r6, r4\n add r5, r4\n",
+        ".if {red} != {green}\n sub r5, r5, r4, asr #6\n .endif\n",
+    ))
 );
 
 rows!(
     /// A texture.
-    texels<FORMAT>,
+    texels,
     [1],
     [0 1 2],
     "add r12, #16",
@@ -674,7 +681,7 @@ rows!(
 
 rows!(
     /// A texture with a highlight.
-    texels_and_highlight<FORMAT>,
+    texels_and_highlight,
     [1],
     [0 1 2 3 4 5],
     "add r12, #16",

@@ -183,7 +183,7 @@ impl<C: Pixel> Shades<WithHighlight> for OneLightRamp<'_, C> {
     #[inline]
     fn lit<'k>(&'k self, lookup: kernels::Lookup<'k>) -> Option<kernels::Lit<'k>> {
         let [even, odd] = self.ramps.both();
-        C::lit(kernels::Colours::Table([C::ramp(even)?, C::ramp(odd)?]), 1, lookup)
+        C::lit(kernels::Colours::Table([C::entries(even)?, C::entries(odd)?]), 1, lookup)
     }
 }
 
@@ -198,7 +198,7 @@ impl<C: Pixel> Shades<DiffuseOnly> for OneLightRamp<'_, C> {
     fn lit<'k>(&'k self, lookup: kernels::Lookup<'k>) -> Option<kernels::Lit<'k>> {
         let [even, odd] = self.ramps.both();
         let lookup = kernels::Lookup { top: (self.floor << (KERNEL_BITS - LEVEL)) as i32, ..lookup };
-        C::lit(kernels::Colours::Table([C::ramp(even)?, C::ramp(odd)?]), 0, lookup)
+        C::lit(kernels::Colours::Table([C::entries(even)?, C::entries(odd)?]), 0, lookup)
     }
 }
 

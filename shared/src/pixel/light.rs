@@ -13,6 +13,7 @@ use crate::{
     pixel::{
         Pixel, PixelFormat, Rgb332, Rgb565Be,
         dither::{HALF, threshold},
+        drawn_by_kernels,
         gamma::{Gamma, LIGHT_BITS as BITS},
         ramps::Rounded,
     },
@@ -25,7 +26,8 @@ use embedded_graphics_core::{
     },
     primitives::Rectangle,
 };
-use zerocopy::{FromBytes, Immutable, IntoBytes, KnownLayout};
+use microphong_kernels as kernels;
+use zerocopy::{FromBytes, Immutable, IntoBytes, KnownLayout, transmute_mut, transmute_ref};
 
 /// Largest value of a channel before it is scaled to the display.
 const MAX: u32 = (1 << BITS) - 1;
@@ -37,6 +39,22 @@ const IS_FINAL: u32 = 1 << 31;
 #[inline]
 const fn word([r, g, b]: [u32; 3]) -> u32 {
     r << LOWEST[0] | g << LOWEST[1] | b << LOWEST[2]
+}
+
+/// Evaluates an expression in which a name is the format of light for a display. There are kernels for light of which [`Output`] makes pixels.
+macro_rules! for_shown {
+    ($name:ident, $shown:expr, $expression:expr) => {
+        for_shown!($name, $shown, $expression, [5, 6, 5] [6, 6, 6] [8, 8, 8] [3, 3, 2])
+    };
+    ($name:ident, $shown:expr, $expression:expr, $($bits:tt)*) => {
+        match $shown {
+            $($bits => {
+                const $name: u32 = kernels::format(kernels::Order::Light, $bits);
+                $expression
+            })*
+            _ => None,
+        }
+    };
 }
 
 /// A pixel of light for a display with `R` bits of red, `G` bits of green and `B` bits of blue. It is finer than a pixel of the display. A pass
@@ -113,6 +131,12 @@ impl<const R: u32, const G: u32, const B: u32> Light<R, G, B> {
         let channel = |level: i32| (level >> (fraction + 8 - BITS)).clamp(0, MAX as i32) as u32;
         Self::scaled_to_display([channel(r), channel(g), channel(b)])
     }
+}
+
+/// The pixels as numbers.
+#[inline]
+fn numbers<const R: u32, const G: u32, const B: u32>(pixels: &mut [Light<R, G, B>]) -> &mut [u32] {
+    transmute_mut!(pixels)
 }
 
 impl<const R: u32, const G: u32, const B: u32> PixelColor for Light<R, G, B> {
@@ -201,6 +225,8 @@ impl<const R: u32, const G: u32, const B: u32> Pixel for Light<R, G, B> {
     fn mixed_from(channels: [u8; 3]) -> Self {
         Self(word(channels.map(|channel| u32::from(channel) << (BITS - 8))) | IS_FINAL)
     }
+
+    drawn_by_kernels!(u32, 1, numbers, u32::from, for_shown, [R, G, B]);
 }
 
 /// A pixel of grey light for a display with `DEPTH` bits of grey, less than eight. See [`Light`].

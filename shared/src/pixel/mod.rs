@@ -32,7 +32,7 @@ use embedded_graphics_core::{
     prelude::RgbColor,
 };
 use microphong_kernels as kernels;
-use zerocopy::{FromBytes, Immutable, IntoBytes, KnownLayout, transmute_ref};
+use zerocopy::{FromBytes, Immutable, IntoBytes, KnownLayout, transmute_mut, transmute_ref};
 
 /// A format in which a display stores pixels. It is implemented for the colours of embedded-graphics (for example `Rgb565`, `Gray4`,
 /// `BinaryColor`) and for [`Rgb565Be`] and [`Rgb332`].
@@ -196,35 +196,14 @@ pub trait Pixel: PixelFormat {
         Self::pack([channel(r, dr), channel(g, dg), channel(b, db)])
     }
 
-    /// Whether kernels in assembler draw this format. They do if a pixel is a half word of 5, 6 and 5 bits.
+    /// Whether kernels in assembler draw this format on this processor.
     #[doc(hidden)]
     const HAS_KERNELS: bool = false;
-
-    /// The pixels as kernels store them.
-    #[doc(hidden)]
-    #[inline]
-    fn halfwords(_: &mut [Self]) -> Option<&mut [u16]> {
-        None
-    }
-
-    /// Two entries of a table as a kernel stores them.
-    #[doc(hidden)]
-    #[inline]
-    fn halves(_: [Self::Stored; 2]) -> Option<[u16; 2]> {
-        None
-    }
-
-    /// Tables of colours as a kernel reads them.
-    #[doc(hidden)]
-    #[inline]
-    fn table(_: &Self::Ramps) -> Option<&kernels::Table> {
-        None
-    }
 
     /// A table of colours as a kernel reads it.
     #[doc(hidden)]
     #[inline]
-    fn ramp(_: &[Self::Stored; RAMP]) -> Option<&[u16; RAMP]> {
+    fn entries(_: &[Self::Stored; RAMP]) -> Option<kernels::Entries<'_>> {
         None
     }
 
@@ -235,12 +214,125 @@ pub trait Pixel: PixelFormat {
         None
     }
 
+    /// Fills rows by this kernel, see [`kernels::Lit::fill`].
+    #[doc(hidden)]
+    #[inline]
+    fn fill_lit(
+        _: &mut [Self],
+        _: kernels::Rows<'_>,
+        _depth: &mut kernels::Plane,
+        _: &mut kernels::Fields<'_>,
+        _: &kernels::Lit<'_>,
+    ) -> Option<u32> {
+        None
+    }
+
+    /// Fills rows by a level and tables of colours, see [`kernels::ramp`].
+    #[doc(hidden)]
+    #[inline]
+    fn fill_ramp(
+        _: &mut [Self],
+        _: kernels::Rows<'_>,
+        _depth: Option<&mut kernels::Plane>,
+        _level: &mut kernels::Plane,
+        _: &Self::Ramps,
+    ) -> Option<u32> {
+        None
+    }
+
+    /// Fills rows by two colours in turn, see [`kernels::solid`].
+    #[doc(hidden)]
+    #[inline]
+    fn fill_solid(_: &mut [Self], _: kernels::Rows<'_>, _depth: Option<&mut kernels::Plane>, _: [Self::Stored; 2]) -> Option<u32> {
+        None
+    }
+
     /// Fills rows by three levels with [`CHANNEL`] fraction bits, see [`kernels::channels`].
     #[doc(hidden)]
     #[inline]
-    fn fill_channels(_: kernels::Rows<'_>, _: &mut kernels::Plane, _: &mut [kernels::Plane; 3], _: i32) -> Option<u32> {
+    fn fill_channels(
+        _: &mut [Self],
+        _: kernels::Rows<'_>,
+        _depth: &mut kernels::Plane,
+        _levels: &mut [kernels::Plane; 3],
+        _raise: i32,
+    ) -> Option<u32> {
         None
     }
+}
+
+/// What of a [`Pixel`] is the same for all formats that kernels draw: the type of a number, the number of tables of colours, what makes numbers of pixels and
+/// of an entry of a table, and what evaluates an expression in which `FORMAT` is the format.
+macro_rules! drawn_by_kernels {
+    ($type:ident, $tables:literal, $numbers:expr, $number:expr, $for_format:ident $(, $format:expr)?) => {
+        const HAS_KERNELS: bool = if size_of::<$type>() == 2 { kernels::AVAILABLE } else { kernels::WORDS_AVAILABLE };
+
+        #[inline]
+        fn entries(ramp: &[Self::Stored; $crate::format::RAMP]) -> Option<kernels::Entries<'_>> {
+            let numbers: &[$type; $crate::format::RAMP] = transmute_ref!(ramp);
+            Some(numbers.into())
+        }
+
+        // Where it is called, the compiler knows the colours, and leaves out all other kernels.
+        #[inline(always)]
+        fn lit<'a>(colours: kernels::Colours<'a>, highlights: usize, lookup: kernels::Lookup<'a>) -> Option<kernels::Lit<'a>> {
+            $for_format!(FORMAT, $($format,)? kernels::Lit::new::<FORMAT>(colours, highlights, lookup))
+        }
+
+        #[inline]
+        fn fill_lit(
+            pixels: &mut [Self],
+            rows: kernels::Rows<'_>,
+            depth: &mut kernels::Plane,
+            fields: &mut kernels::Fields<'_>,
+            lit: &kernels::Lit<'_>,
+        ) -> Option<u32> {
+            Some(lit.fill($numbers(pixels), rows, depth, fields))
+        }
+
+        #[inline(always)]
+        fn fill_ramp(
+            pixels: &mut [Self],
+            rows: kernels::Rows<'_>,
+            depth: Option<&mut kernels::Plane>,
+            level: &mut kernels::Plane,
+            ramps: &Self::Ramps,
+        ) -> Option<u32> {
+            let colours: &[$type; $tables * $crate::format::RAMP] = transmute_ref!(ramps);
+            kernels::ramp($numbers(pixels), rows, depth, level, colours)
+        }
+
+        #[inline(always)]
+        fn fill_solid(
+            pixels: &mut [Self],
+            rows: kernels::Rows<'_>,
+            depth: Option<&mut kernels::Plane>,
+            colours: [Self::Stored; 2],
+        ) -> Option<u32> {
+            let [first, second] = colours;
+            kernels::solid($numbers(pixels), rows, depth, [$number(first), $number(second)])
+        }
+
+        #[inline(always)]
+        fn fill_channels(
+            pixels: &mut [Self],
+            rows: kernels::Rows<'_>,
+            depth: &mut kernels::Plane,
+            levels: &mut [kernels::Plane; 3],
+            raise: i32,
+        ) -> Option<u32> {
+            $for_format!(FORMAT, $($format,)? kernels::channels::<FORMAT, $type>($numbers(pixels), rows, depth, levels, raise))
+        }
+    };
+}
+pub(crate) use drawn_by_kernels;
+
+/// Evaluates an expression in which a name is this format.
+macro_rules! for_format {
+    ($name:ident, $format:expr, $expression:expr) => {{
+        const $name: u32 = $format;
+        $expression
+    }};
 }
 
 /// Half a step of a channel of `bits` bits, as a level with [`CHANNEL`] fraction bits.
@@ -364,52 +456,17 @@ macro_rules! rgb565 {
                 Self::from_stored(mixed_rgb565(self.stored(), other.stored(), share))
             }
 
-            const HAS_KERNELS: bool = true;
-
-            #[inline]
-            fn halfwords(pixels: &mut [Self]) -> Option<&mut [u16]> {
-                Some(kernels::halfwords(pixels))
-            }
-
-            #[inline]
-            fn halves(stored: [u16; 2]) -> Option<[u16; 2]> {
-                Some(stored)
-            }
-
-            #[inline]
-            fn table(ramps: &InTurn<u16>) -> Option<&kernels::Table> {
-                Some(transmute_ref!(ramps))
-            }
-
-            #[inline]
-            fn ramp(ramp: &[u16; RAMP]) -> Option<&[u16; RAMP]> {
-                Some(ramp)
-            }
-
-            #[inline]
-            fn lit<'a>(colours: kernels::Colours<'a>, highlights: usize, lookup: kernels::Lookup<'a>) -> Option<kernels::Lit<'a>> {
-                kernels::Lit::new::<{ $order as u8 }>(colours, highlights, lookup)
-            }
-
-            #[inline]
-            fn fill_channels(
-                rows: kernels::Rows<'_>,
-                depth: &mut kernels::Plane,
-                levels: &mut [kernels::Plane; 3],
-                raise: i32,
-            ) -> Option<u32> {
-                kernels::channels::<{ $order as u8 }>(rows, depth, levels, raise)
-            }
+            drawn_by_kernels!(u16, 2, kernels::numbers, u32::from, for_format, kernels::format($order, [5, 6, 5]));
         }
     };
 }
 
-rgb565!(Rgb565, kernels::Format::Rgb, 0, 2);
-rgb565!(Bgr565, kernels::Format::Bgr, 2, 0);
+rgb565!(Rgb565, kernels::Order::Rgb, 0, 2);
+rgb565!(Bgr565, kernels::Order::Bgr, 2, 0);
 
 /// Red, green and blue of equal depth.
 macro_rules! rgb {
-    ($format:ty, $depth:literal, $ramps:ident) => {
+    ($format:ty, $depth:literal, $ramps:ident, $tables:literal) => {
         impl PixelFormat for $format {
             const GRAY: bool = false;
             const DEPTH: [u32; 3] = [$depth; 3];
@@ -442,12 +499,14 @@ macro_rules! rgb {
             fn from_stored(stored: u32) -> Self {
                 RawU24::new(stored).into()
             }
+
+            drawn_by_kernels!(u32, $tables, kernels::numbers, u32::from, for_format, kernels::format(kernels::Order::Rgb, [$depth; 3]));
         }
     };
 }
 
-rgb!(Rgb666, 6, InTurn);
-rgb!(Rgb888, 8, Rounded);
+rgb!(Rgb666, 6, InTurn, 2);
+rgb!(Rgb888, 8, Rounded, 1);
 
 /// One channel.
 macro_rules! gray {
@@ -526,6 +585,12 @@ impl From<Rgb565> for Rgb565Be {
     }
 }
 
+/// The pixels as numbers.
+#[inline]
+fn numbers(pixels: &mut [Rgb565Be]) -> &mut [u16] {
+    transmute_mut!(pixels)
+}
+
 impl PixelFormat for Rgb565Be {
     const GRAY: bool = false;
     const DEPTH: [u32; 3] = [5, 6, 5];
@@ -577,37 +642,14 @@ impl Pixel for Rgb565Be {
         Self(mixed_rgb565(u16::from_be(self.0), u16::from_be(other.0), share).to_be())
     }
 
-    const HAS_KERNELS: bool = true;
-
-    #[inline]
-    fn halfwords(pixels: &mut [Self]) -> Option<&mut [u16]> {
-        <[u16]>::mut_from_bytes(pixels.as_mut_bytes()).ok()
-    }
-
-    #[inline]
-    fn halves([first, second]: [Self; 2]) -> Option<[u16; 2]> {
-        Some([first.0, second.0])
-    }
-
-    #[inline]
-    fn table(ramps: &InTurn<Self>) -> Option<&kernels::Table> {
-        Some(transmute_ref!(ramps))
-    }
-
-    #[inline]
-    fn ramp(ramp: &[Self; RAMP]) -> Option<&[u16; RAMP]> {
-        Some(transmute_ref!(ramp))
-    }
-
-    #[inline]
-    fn lit<'a>(colours: kernels::Colours<'a>, highlights: usize, lookup: kernels::Lookup<'a>) -> Option<kernels::Lit<'a>> {
-        kernels::Lit::new::<{ kernels::Format::Swapped as u8 }>(colours, highlights, lookup)
-    }
-
-    #[inline]
-    fn fill_channels(rows: kernels::Rows<'_>, depth: &mut kernels::Plane, levels: &mut [kernels::Plane; 3], raise: i32) -> Option<u32> {
-        kernels::channels::<{ kernels::Format::Swapped as u8 }>(rows, depth, levels, raise)
-    }
+    drawn_by_kernels!(
+        u16,
+        2,
+        numbers,
+        |Self(number): Self| u32::from(number),
+        for_format,
+        kernels::format(kernels::Order::Swapped, [5, 6, 5])
+    );
 }
 
 /// A pixel of one byte: three bits of red, three bits of green and two bits of blue. Embedded-graphics has no such format.

@@ -50,7 +50,7 @@ pub trait PixelShader<V>: ByRows {
 
     /// Fills rows by the kernel for linear fields. There is no plane of `depth` without a depth test. Returns the number of pixels between the sides.
     #[inline(always)]
-    fn fill<P: Patch>(&self, _rows: kernels::Rows<'_>, _depth: &mut [Plane], _patch: &mut P) -> Option<u32> {
+    fn fill<P: Patch>(&self, _pixels: &mut [Self::Pixel], _rows: kernels::Rows<'_>, _depth: &mut [Plane], _patch: &mut P) -> Option<u32> {
         None
     }
 }
@@ -62,7 +62,7 @@ pub(crate) const fn has_kernels<C: Pixel>() -> bool {
 
 /// So many planes, if there are kernels for the pixel format and the processor.
 const fn linear<C: Pixel>(planes: usize) -> Option<[usize; 2]> {
-    if C::HAS_KERNELS && kernels::AVAILABLE { Some([planes, 0]) } else { None }
+    if C::HAS_KERNELS { Some([planes, 0]) } else { None }
 }
 
 /// One colour for all pixels, as tables of colours hold it for even rows and for odd ones.
@@ -106,8 +106,8 @@ impl<C: Pixel> PixelShader<()> for Solid<C> {
     const ALONE: bool = true;
 
     #[inline(always)]
-    fn fill<P: Patch>(&self, rows: kernels::Rows<'_>, depth: &mut [Plane], _: &mut P) -> Option<u32> {
-        kernels::solid(rows, depth.first_mut(), C::halves(self.0.both())?)
+    fn fill<P: Patch>(&self, pixels: &mut [C], rows: kernels::Rows<'_>, depth: &mut [Plane], _: &mut P) -> Option<u32> {
+        C::fill_solid(pixels, rows, depth.first_mut(), self.0.both())
     }
 }
 
@@ -131,8 +131,8 @@ impl<C: Pixel> PixelShader<[u32; 1]> for Ramp<'_, C> {
     const ALONE: bool = true;
 
     #[inline(always)]
-    fn fill<P: Patch>(&self, rows: kernels::Rows<'_>, depth: &mut [Plane], patch: &mut P) -> Option<u32> {
-        kernels::ramp(rows, depth.first_mut(), patch.planes().first_mut()?, C::table(self.0)?)
+    fn fill<P: Patch>(&self, pixels: &mut [C], rows: kernels::Rows<'_>, depth: &mut [Plane], patch: &mut P) -> Option<u32> {
+        C::fill_ramp(pixels, rows, depth.first_mut(), patch.planes().first_mut()?, self.0)
     }
 }
 
@@ -178,8 +178,9 @@ impl<C: Pixel> PixelShader<[u32; 3]> for Rgb<C> {
     const KERNEL: Option<[usize; 2]> = linear::<C>(3);
 
     #[inline(always)]
-    fn fill<P: Patch>(&self, rows: kernels::Rows<'_>, depth: &mut [Plane], patch: &mut P) -> Option<u32> {
-        C::fill_channels(rows, depth.first_mut()?, patch.planes().first_chunk_mut()?, self.0.now())
+    fn fill<P: Patch>(&self, pixels: &mut [C], rows: kernels::Rows<'_>, depth: &mut [Plane], patch: &mut P) -> Option<u32> {
+        let raise = if C::Ramps::CHECKERED { self.0.now() } else { 0 };
+        C::fill_channels(pixels, rows, depth.first_mut()?, patch.planes().first_chunk_mut()?, raise)
     }
 }
 

@@ -350,15 +350,15 @@ impl<'f> ScreenTriangle<'f> {
         // The first case is the usual one. It has no closure, because the compiler would keep the state of a closure in memory.
         let filled = match sides.below() {
             Some(turn) => {
-                let rows = part([sides.row, sides.stop], &mut pair, turn, band);
-                rows.and_then(|rows| shader.fill(rows, depth.planes(), patch)).unwrap_or(0)
+                let (pixels, rows) = part([sides.row, sides.stop], &mut pair, turn, band);
+                shader.fill(pixels, rows, depth.planes(), patch).unwrap_or(0)
             }
-            None => self.fill_parts(&mut pair, band, &mut |rows, is_odd| {
+            None => self.fill_parts(&mut pair, band, &mut |pixels, rows, is_odd| {
                 let mut shader = shader;
                 if is_odd {
                     shader.step_row();
                 }
-                shader.fill(rows, depth.planes(), patch).unwrap_or(0)
+                shader.fill(pixels, rows, depth.planes(), patch).unwrap_or(0)
             }),
         };
         if self.is_saved::<P>() {
@@ -379,10 +379,13 @@ impl<'f> ScreenTriangle<'f> {
     ) -> u32 {
         let sides = &self.rows.sides;
         match sides.below() {
-            Some(turn) => part([sides.row, sides.stop], pair, turn, band).map_or(0, |rows| lit.fill(rows, depth, fields)),
-            None => {
-                self.fill_parts(pair, band, &mut |rows, is_odd| if is_odd { lit.from_second_row() } else { *lit }.fill(rows, depth, fields))
+            Some(turn) => {
+                let (pixels, rows) = part([sides.row, sides.stop], pair, turn, band);
+                C::fill_lit(pixels, rows, depth, fields, lit).unwrap_or(0)
             }
+            None => self.fill_parts(pair, band, &mut |pixels, rows, is_odd| {
+                C::fill_lit(pixels, rows, depth, fields, &if is_odd { lit.from_second_row() } else { *lit }).unwrap_or(0)
+            }),
         }
     }
 
@@ -406,14 +409,13 @@ impl<'f> ScreenTriangle<'f> {
         &self,
         pair: &mut LeftRight,
         band: &mut Band<'_, C>,
-        fill: &mut dyn FnMut(kernels::Rows<'_>, bool) -> u32,
+        fill: &mut dyn FnMut(&mut [C], kernels::Rows<'_>, bool) -> u32,
     ) -> u32 {
         let sides = &self.rows.sides;
         let (mut row, mut stop, mut filled) = (sides.row, sides.stop, 0u32);
         loop {
-            if let Some(rows) = part([row, stop], pair, kernels::Turn::default(), band) {
-                filled = filled.wrapping_add(fill(rows, row.wrapping_sub(sides.row) & 1 != 0));
-            }
+            let (pixels, rows) = part([row, stop], pair, kernels::Turn::default(), band);
+            filled = filled.wrapping_add(fill(pixels, rows, row.wrapping_sub(sides.row) & 1 != 0));
             if stop >= sides.end {
                 return filled;
             }
@@ -467,7 +469,7 @@ pub fn turn<A: Copy>([a, b, c]: [A; 3], by: usize) -> [A; 3] {
     }
 }
 
-/// The rows from `row` to `stop`, and those below the turn, for a kernel; `None` if there are no kernels for the pixel format.
+/// The pixels of the band, and the rows from `row` to `stop` and those below the turn, for a kernel.
 ///
 /// They are within its limits. An edge that is stepped from end to end has at most [`MAX_STEPPED_HEIGHT`]. Of others a part has at most as many rows as
 /// its longer edge, and as [`crate::setup::edge::Edge::exact_rows`]: of a height of h rows min(h, 8192 / h), at most 90.
@@ -477,10 +479,9 @@ fn part<'a, C: Pixel>(
     pair: &'a mut LeftRight,
     turn: kernels::Turn,
     band: &'a mut Band<'_, C>,
-) -> Option<kernels::Rows<'a>> {
+) -> (&'a mut [C], kernels::Rows<'a>) {
     let (first, height) = (row.wrapping_sub(band.top) as u32, stop.wrapping_sub(row) as u32);
-    let pixels = C::halfwords(band.pixels)?;
-    Some(kernels::Rows { pixels, depth: band.depth, width: band.width, first, sides: transmute_mut!(pair), height, turn })
+    (band.pixels, kernels::Rows { depth: band.depth, width: band.width, first, sides: transmute_mut!(pair), height, turn })
 }
 
 /// Saves a triangle for the next band, stepped to its first row there.

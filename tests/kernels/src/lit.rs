@@ -1,9 +1,12 @@
 //! Kernels that compute light at each pixel, and the loop that they replace.
 
-use crate::{GUARD, PIXELS, Random, line, plane, say};
+use crate::{
+    BGR565, GUARD, LIGHT332, LIGHT565, PIXELS, Padded, RGB565, RGB666, RGB888, Random, SWAPPED, as_halfwords, bytes, for_format, line,
+    packed, plane, say, within,
+};
 use cortex_m_semihosting::debug;
 use microphong_kernels::{
-    Colours, Fields, Format, Highlights, Lit, Lookup, MAX_HEIGHT, Plane, Quadric, Roots, Rows, Shares, Sides, Sums, Texels, Turn,
+    Colours, Entries, Fields, Highlights, Lit, Lookup, MAX_HEIGHT, Plane, Quadric, Roots, Rows, Shares, Sides, Sums, Texels, Turn,
 };
 
 /// Cases for each kernel.
@@ -44,6 +47,16 @@ static RAMPS: [[u16; 512]; 2] = {
     tables
 };
 
+static WORD_RAMPS: [[u32; 512]; 2] = {
+    let mut tables = [[0; 512]; 2];
+    let mut i = 0;
+    while i < 1024 {
+        tables[i % 2][i / 2] = scattered(i);
+        i += 1;
+    }
+    tables
+};
+
 static TEXELS: [u8; 256] = {
     let mut texels = [0; 256];
     let mut i = 0;
@@ -79,33 +92,45 @@ enum Light {
 }
 
 /// A kernel: the format of channels, the light, and the number of highlights.
-type Kernel = (Format, Light, usize);
+type Kernel = (u32, Light, usize);
 
-const KERNELS: [Kernel; 24] = [
-    (Format::Rgb, Light::Table, 0),
-    (Format::Rgb, Light::Table, 1),
-    (Format::Rgb, Light::Lights(1), 0),
-    (Format::Rgb, Light::Lights(1), 1),
-    (Format::Swapped, Light::Lights(1), 1),
-    (Format::Rgb, Light::Lights(2), 0),
-    (Format::Rgb, Light::Lights(2), 1),
-    (Format::Rgb, Light::Lights(2), 2),
-    (Format::Bgr, Light::Lights(2), 2),
-    (Format::Rgb, Light::Summed, 0),
-    (Format::Rgb, Light::Summed, 1),
-    (Format::Bgr, Light::Summed, 2),
-    (Format::Rgb, Light::Painted, 0),
-    (Format::Swapped, Light::Painted, 1),
-    (Format::Rgb, Light::PaintedSums, 0),
-    (Format::Swapped, Light::PaintedSums, 1),
-    (Format::Rgb, Light::PaintedSums, 2),
-    (Format::Rgb, Light::Texels, 0),
-    (Format::Bgr, Light::Texels, 1),
-    (Format::Rgb, Light::NeutralTexels, 0),
-    (Format::Bgr, Light::NeutralTexels, 0),
-    (Format::Swapped, Light::NeutralTexels, 0),
-    (Format::Rgb, Light::NeutralTexels, 1),
-    (Format::Swapped, Light::NeutralTexels, 1),
+const KERNELS: [Kernel; 36] = [
+    (RGB565, Light::Table, 0),
+    (RGB565, Light::Table, 1),
+    (RGB565, Light::Lights(1), 0),
+    (RGB565, Light::Lights(1), 1),
+    (SWAPPED, Light::Lights(1), 1),
+    (RGB565, Light::Lights(2), 0),
+    (RGB565, Light::Lights(2), 1),
+    (RGB565, Light::Lights(2), 2),
+    (BGR565, Light::Lights(2), 2),
+    (RGB565, Light::Summed, 0),
+    (RGB565, Light::Summed, 1),
+    (BGR565, Light::Summed, 2),
+    (RGB565, Light::Painted, 0),
+    (SWAPPED, Light::Painted, 1),
+    (RGB565, Light::PaintedSums, 0),
+    (SWAPPED, Light::PaintedSums, 1),
+    (RGB565, Light::PaintedSums, 2),
+    (RGB565, Light::Texels, 0),
+    (BGR565, Light::Texels, 1),
+    (RGB565, Light::NeutralTexels, 0),
+    (BGR565, Light::NeutralTexels, 0),
+    (SWAPPED, Light::NeutralTexels, 0),
+    (RGB565, Light::NeutralTexels, 1),
+    (SWAPPED, Light::NeutralTexels, 1),
+    (RGB888, Light::Table, 0),
+    (LIGHT565, Light::Table, 1),
+    (RGB666, Light::Lights(1), 0),
+    (RGB888, Light::Lights(1), 1),
+    (LIGHT332, Light::Lights(2), 1),
+    (LIGHT565, Light::Lights(2), 2),
+    (LIGHT565, Light::Summed, 1),
+    (RGB666, Light::Painted, 1),
+    (RGB888, Light::PaintedSums, 2),
+    (LIGHT565, Light::Texels, 1),
+    (RGB888, Light::NeutralTexels, 0),
+    (LIGHT565, Light::NeutralTexels, 1),
 ];
 
 /// The number of numerators.
@@ -130,14 +155,14 @@ fn has_texture(light: Light) -> bool {
     matches!(light, Light::Texels | Light::NeutralTexels)
 }
 
-/// Pixels or their depth, with guards around them.
-type Padded = [u16; PIXELS + 2 * GUARD];
+/// Depth of pixels, with guards around it.
+type PaddedDepth = [u16; PIXELS + 2 * GUARD];
 
 /// What a kernel changes.
 #[derive(Clone, PartialEq)]
 struct State {
     pixels: Padded,
-    depth: Padded,
+    depth: PaddedDepth,
     sides: Sides,
     plane: Plane,
     planes: [Plane; 8],
@@ -176,17 +201,17 @@ impl Case {
     /// Draws with these fields and this table of highlights.
     fn by_kernel_of(
         &self,
-        (pixels, depth, sides, plane): (&mut Padded, &mut Padded, &mut Sides, &mut Plane),
+        (pixels, depth, sides, plane): (&mut Padded, &mut PaddedDepth, &mut Sides, &mut Plane),
         fields: &mut Fields<'_>,
         highlights_table: Option<&Highlights>,
     ) -> Option<u32> {
         let &Self { width, first, height, turn, top, kernel: (format, light, highlights), .. } = self;
-        let (pixels, depth) = (&mut pixels[GUARD..][..PIXELS], &mut depth[GUARD..][..PIXELS]);
-        let rows = Rows { pixels, depth, width, first, height, sides, turn };
+        let depth = within(depth);
         let lookup = if has_texture(light) { Lookup::default() } else { Lookup { roots: Some(&ROOTS), highlights: highlights_table, top } };
         let texels = self.roundings.map(|rounding| Texels::new(&PALETTE[..self.colours], self.texels(), self.size, rounding).unwrap());
         let colours = match light {
-            Light::Table => Colours::Table(RAMPS.each_ref()),
+            Light::Table if bytes(format) == 4 => Colours::Table(WORD_RAMPS.each_ref().map(Entries::Words)),
+            Light::Table => Colours::Table(RAMPS.each_ref().map(Entries::Halfwords)),
             Light::Lights(1) => Colours::Light(self.sums.each_ref().map(|[first, _]| first)),
             Light::Lights(_) => Colours::TwoLights(self.sums.each_ref()),
             Light::Summed => Colours::Summed(self.shares.each_ref()),
@@ -195,12 +220,14 @@ impl Case {
             Light::Texels => Colours::Texels(texels.each_ref()),
             Light::NeutralTexels => Colours::NeutralTexels(texels.each_ref()),
         };
-        let lit = match format {
-            Format::Rgb => Lit::new::<{ Format::Rgb as u8 }>(colours, highlights, lookup),
-            Format::Bgr => Lit::new::<{ Format::Bgr as u8 }>(colours, highlights, lookup),
-            Format::Swapped => Lit::new::<{ Format::Swapped as u8 }>(colours, highlights, lookup),
-        };
-        lit.map(|lit| if self.from_second_row { lit.from_second_row() } else { lit }.fill(rows, plane, fields))
+        let lit = for_format!(format, Lit::new::<FORMAT>(colours, highlights, lookup))?;
+        let lit = if self.from_second_row { lit.from_second_row() } else { lit };
+        let rows = Rows { depth, width, first, height, sides, turn };
+        Some(if bytes(format) == 2 {
+            as_halfwords(pixels, |pixels| lit.fill(pixels, rows, plane, fields))
+        } else {
+            lit.fill(within(pixels), rows, plane, fields)
+        })
     }
 
     /// The texels of a texture of this size.
@@ -210,7 +237,7 @@ impl Case {
     }
 
     /// The pixel of these fields, on an even row of the kernel or on an odd one; `None` if it is left out.
-    fn pixel(&self, planes: &[Plane; 8], quadratics: &[Quadric; 2], column: i32, parity: usize) -> Option<u16> {
+    fn pixel(&self, planes: &[Plane; 8], quadratics: &[Quadric; 2], column: i32, parity: usize) -> Option<u32> {
         let (format, light, highlights) = self.kernel;
         let [square, second] = quadratics.map(|[value, _, _, slope, _, bend]| {
             slope.wrapping_add(bend.wrapping_mul(column)).wrapping_mul(column).wrapping_add(value) as u32
@@ -228,7 +255,8 @@ impl Case {
             Light::Table => {
                 let level = over_length(value()).max(0) as u32;
                 let more = if highlights > 0 { (highlight(value()) as u32) << 12 } else { self.top as u32 };
-                return Some(RAMPS[parity][(level.wrapping_add(more) >> 19 & 511) as usize]);
+                let index = (level.wrapping_add(more) >> 19 & 511) as usize;
+                return Some(if bytes(format) == 4 { WORD_RAMPS[parity][index] } else { RAMPS[parity][index].into() });
             }
             Light::Lights(lights) => {
                 for light in 0..lights {
@@ -253,7 +281,7 @@ impl Case {
                 let (light, lit) = (levels().map(|level| level >> 6), if highlights > 0 { levels() } else { [0; 3] });
                 let rounding = if is_neutral { [outer, green, outer] } else { [outer, green, blue] };
                 for (k, channel) in channels.iter_mut().enumerate() {
-                    let less = |level: i32| if is_neutral && k != 1 { level.wrapping_sub(level >> 6) } else { level };
+                    let less = |level: i32| if is_neutral && k != 1 && bytes(format) == 2 { level.wrapping_sub(level >> 6) } else { level };
                     let reflected = less(light[k]).wrapping_mul(colour[k].into());
                     *channel = reflected.wrapping_add(less(lit[k])).wrapping_add(rounding[k]);
                 }
@@ -280,13 +308,7 @@ impl Case {
                 }
             }
         }
-        let channel = |k: usize, bits: u32| (channels[k] >> (30 - bits)).clamp(0, (1 << bits) - 1) as u16;
-        let [red, green, blue] = [channel(0, 5), channel(1, 6), channel(2, 5)];
-        Some(match format {
-            Format::Rgb => red << 11 | green << 5 | blue,
-            Format::Bgr => blue << 11 | green << 5 | red,
-            Format::Swapped => (red << 11 | green << 5 | blue).swap_bytes(),
-        })
+        Some(packed(format, channels))
     }
 
     fn by_loop(&self, state: &mut State) -> u32 {
@@ -370,7 +392,7 @@ pub(crate) fn compare(random: &mut Random) -> (u32, u32) {
                 pixels: [0x5555; PIXELS + 2 * GUARD],
                 depth: [0; PIXELS + 2 * GUARD],
                 sides: [l[0], l[1], r[0], r[1]],
-                plane: plane(random, crate::Kernel::Ramp),
+                plane: plane(random, crate::Kernel::Solid(2)),
                 planes,
                 quadratics,
             };

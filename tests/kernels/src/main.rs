@@ -10,7 +10,9 @@ mod lit;
 
 use core::fmt::{self, Arguments, Write};
 use cortex_m_semihosting::{debug, hio};
-use microphong_kernels::{Format, MAX_FIRST, MAX_HEIGHT, MAX_WIDTH, Plane, Rows, Sides, Table, Turn, channels, ramp, solid};
+use microphong_kernels::{
+    MAX_FIRST, MAX_HEIGHT, MAX_WIDTH, Order, Plane, Rows, Sides, Turn, WORDS_AVAILABLE, channels, format, ramp, solid,
+};
 
 /// Cases for each kernel.
 const CASES: u32 = 20_000;
@@ -35,17 +37,95 @@ impl Random {
     }
 }
 
+/// Pixel formats.
+const RGB565: u32 = format(Order::Rgb, [5, 6, 5]);
+const BGR565: u32 = format(Order::Bgr, [5, 6, 5]);
+const SWAPPED: u32 = format(Order::Swapped, [5, 6, 5]);
+const RGB666: u32 = format(Order::Rgb, [6; 3]);
+const RGB888: u32 = format(Order::Rgb, [8; 3]);
+const LIGHT565: u32 = format(Order::Light, [5, 6, 5]);
+const LIGHT332: u32 = format(Order::Light, [3, 3, 2]);
+
+/// Evaluates an expression, in which `FORMAT` is a constant, for a format.
+macro_rules! for_format {
+    ($format:expr, $expression:expr) => {
+        for_format!($format, $expression, RGB565 BGR565 SWAPPED RGB666 RGB888 LIGHT565 LIGHT332)
+    };
+    ($format:expr, $expression:expr, $($name:ident)*) => {
+        match $format {
+            $(crate::$name => {
+                const FORMAT: u32 = crate::$name;
+                $expression
+            })*
+            _ => None,
+        }
+    };
+}
+use for_format;
+
+/// Bytes of a pixel.
+fn bytes(format: u32) -> u8 {
+    if matches!(format, RGB565 | BGR565 | SWAPPED) { 2 } else { 4 }
+}
+
+/// The pixel of levels with 22 fraction bits.
+fn packed(format: u32, levels: [i32; 3]) -> u32 {
+    let clamped = |bits: [u32; 3]| [0, 1, 2].map(|k: usize| (levels[k] >> (30 - bits[k])).clamp(0, (1 << bits[k]) - 1) as u32);
+    let light = |[red, green, blue]: [u32; 3]| {
+        let [r, g, b] = clamped([9; 3]);
+        (r - (r >> red)) << 11 | (g - (g >> green)) << 20 | (b - (b >> blue))
+    };
+    let narrow = || clamped([5, 6, 5]);
+    match format {
+        BGR565 => narrow()[2] << 11 | narrow()[1] << 5 | narrow()[0],
+        RGB666 => clamped([6; 3]).into_iter().fold(0, |pixel, channel| pixel << 6 | channel),
+        RGB888 => clamped([8; 3]).into_iter().fold(0, |pixel, channel| pixel << 8 | channel),
+        LIGHT565 => light([5, 6, 5]),
+        LIGHT332 => light([3, 3, 2]),
+        _ => {
+            let pixel = narrow()[0] << 11 | narrow()[1] << 5 | narrow()[2];
+            if format == SWAPPED { u32::from((pixel as u16).swap_bytes()) } else { pixel }
+        }
+    }
+}
+
+/// Pixels between their guards.
+fn within<T>(pixels: &mut [T; PIXELS + 2 * GUARD]) -> &mut [T] {
+    &mut pixels[GUARD..][..PIXELS]
+}
+
+/// Calls `fill` with pixels of two bytes.
+fn as_halfwords<C>(pixels: &mut Padded, fill: impl FnOnce(&mut [u16]) -> C) -> C {
+    let mut halfwords = pixels.map(|pixel| pixel as u16);
+    let count = fill(within(&mut halfwords));
+    *pixels = halfwords.map(u32::from);
+    count
+}
+
 #[derive(Clone, Copy, Debug, PartialEq)]
 enum Kernel {
-    Ramp,
-    Solid,
-    Channels(Format),
+    /// Bytes of a pixel, and bits of an index.
+    Ramp(u8, u32),
+    Solid(u8),
+    Channels(u32),
 }
+
+impl Kernel {
+    fn bytes(self) -> u8 {
+        match self {
+            Self::Ramp(bytes, _) | Self::Solid(bytes) => bytes,
+            Self::Channels(format) => bytes(format),
+        }
+    }
+}
+
+/// Pixels, with guards around them.
+type Padded = [u32; PIXELS + 2 * GUARD];
 
 /// What a kernel changes.
 #[derive(Clone, PartialEq)]
 struct State {
-    pixels: [u16; PIXELS + 2 * GUARD],
+    pixels: Padded,
     depth: [u16; PIXELS + 2 * GUARD],
     sides: Sides,
     plane: Plane,
@@ -61,32 +141,39 @@ struct Case {
     first: u32,
     height: u32,
     turn: Turn,
-    colours: [u16; 2],
+    colours: [u32; 2],
     raise: i32,
 }
 
 impl Case {
     /// The count of a kernel.
-    fn by_kernel(&self, state: &mut State, table: &Table) -> Option<u32> {
+    fn by_kernel(&self, state: &mut State) -> Option<u32> {
         let &Self { width, first, height, turn, .. } = self;
         let State { pixels, depth, sides, plane, levels } = state;
-        let (pixels, depth) = (&mut pixels[GUARD..][..PIXELS], &mut depth[GUARD..][..PIXELS]);
-        let rows = Rows { pixels, depth, width, first, height, sides, turn };
-        let depth = if self.has_depth { Some(plane) } else { None };
-        match (self.kernel, depth) {
-            (Kernel::Ramp, depth) => ramp(rows, depth, &mut levels[0], table),
-            (Kernel::Solid, depth) => solid(rows, depth, self.colours),
-            (Kernel::Channels(Format::Rgb), Some(depth)) => channels::<{ Format::Rgb as u8 }>(rows, depth, levels, self.raise),
-            (Kernel::Channels(Format::Bgr), Some(depth)) => channels::<{ Format::Bgr as u8 }>(rows, depth, levels, self.raise),
-            (Kernel::Channels(Format::Swapped), Some(depth)) => channels::<{ Format::Swapped as u8 }>(rows, depth, levels, self.raise),
+        let (depth, plane) = (within(depth), if self.has_depth { Some(plane) } else { None });
+        let rows = Rows { depth, width, first, height, sides, turn };
+        let (level, colours, raise) = (&mut levels[0], self.colours, self.raise);
+        match (self.kernel, plane) {
+            (Kernel::Ramp(2, _), plane) => as_halfwords(pixels, |pixels| ramp(pixels, rows, plane, level, &HALFWORDS)),
+            (Kernel::Ramp(_, 9), plane) => ramp(within(pixels), rows, plane, level, WORDS.first_chunk::<512>().unwrap()),
+            (Kernel::Ramp(..), plane) => ramp(within(pixels), rows, plane, level, &WORDS),
+            (Kernel::Solid(2), plane) => as_halfwords(pixels, |pixels| solid(pixels, rows, plane, colours)),
+            (Kernel::Solid(_), plane) => solid(within(pixels), rows, plane, colours),
+            (Kernel::Channels(format), Some(plane)) if bytes(format) == 2 => as_halfwords(
+                pixels,
+                |pixels| for_format!(format, channels::<FORMAT, _>(pixels, rows, plane, levels, raise), RGB565 BGR565 SWAPPED),
+            ),
+            (Kernel::Channels(format), Some(plane)) => {
+                for_format!(format, channels::<FORMAT, _>(within(pixels), rows, plane, levels, raise), RGB666 RGB888 LIGHT565 LIGHT332)
+            }
             (Kernel::Channels(_), None) => None,
         }
     }
 
     /// The loop in Rust that a kernel replaces; returns the count.
-    fn by_loop(&self, state: &mut State, table: &Table) -> u32 {
+    fn by_loop(&self, state: &mut State) -> u32 {
         let State { pixels, depth, sides, plane, levels } = state;
-        let (mut count, mut raise, planes) = (0, self.raise, if self.kernel == Kernel::Ramp { 1 } else { 3 });
+        let (mut count, mut raise, planes) = (0, self.raise, if matches!(self.kernel, Kernel::Ramp(..)) { 1 } else { 3 });
         for row in 0..self.height + self.turn.height {
             if row == self.height {
                 let side = 2 * usize::from(self.turn.is_right);
@@ -105,16 +192,20 @@ impl Case {
                     if self.has_depth {
                         depth[i] = inv_depth;
                     }
-                    let channel = |k: usize, bits: u32| {
-                        let level = at(&levels[k]).wrapping_add(raise << (8 - bits));
-                        (level >> (30 - bits)).clamp(0, (1 << bits) - 1) as u16
-                    };
                     pixels[i] = match self.kernel {
-                        Kernel::Ramp => table[(at(&levels[0]) as u32 >> 22) as usize],
-                        Kernel::Solid => self.colours[row as usize % 2],
-                        Kernel::Channels(Format::Rgb) => channel(0, 5) << 11 | channel(1, 6) << 5 | channel(2, 5),
-                        Kernel::Channels(Format::Bgr) => channel(2, 5) << 11 | channel(1, 6) << 5 | channel(0, 5),
-                        Kernel::Channels(Format::Swapped) => (channel(0, 5) << 11 | channel(1, 6) << 5 | channel(2, 5)).swap_bytes(),
+                        Kernel::Ramp(2, bits) => HALFWORDS[(at(&levels[0]) as u32 >> (32 - bits)) as usize].into(),
+                        Kernel::Ramp(_, bits) => WORDS[(at(&levels[0]) as u32 >> (32 - bits)) as usize],
+                        Kernel::Solid(_) => self.colours[row as usize % 2],
+                        Kernel::Channels(format) => {
+                            // Dither is relative to the step of a channel. Light has none.
+                            let steps = match format {
+                                LIGHT565 | LIGHT332 => [0; 3],
+                                RGB888 => [1; 3],
+                                RGB666 => [4; 3],
+                                _ => [8, 4, 8],
+                            };
+                            packed(format, [0, 1, 2].map(|k: usize| at(&levels[k]).wrapping_add(raise.wrapping_mul(steps[k]))))
+                        }
                     };
                 }
             }
@@ -123,7 +214,7 @@ impl Case {
             if self.has_depth {
                 plane[0] = plane[0].wrapping_add(plane[2]);
             }
-            if self.kernel != Kernel::Solid {
+            if !matches!(self.kernel, Kernel::Solid(_)) {
                 levels.iter_mut().take(planes).for_each(|[value, _, down]| *value = value.wrapping_add(*down));
             }
             raise = -raise;
@@ -155,7 +246,8 @@ fn case(random: &mut Random, kernel: Kernel, has_depth: bool) -> Case {
     let height = random.below((rows - first).min(9) + 1);
     let below = random.below((rows - first - height).min(9) + 1);
     let turn = Turn { height: below, is_right: random.below(2) == 1, line: line(random, width) };
-    let colours = [random.next() as u16, random.next() as u16];
+    let mask = if kernel.bytes() == 2 { 0xFFFF } else { u32::MAX };
+    let colours = [random.next() & mask, random.next() & mask];
     Case { kernel, has_depth, width, first, height, turn, colours, raise: (random.below(3) as i32 - 1) << 20 }
 }
 
@@ -178,22 +270,51 @@ fn say(text: Arguments<'_>) {
     let _ = hio::hstdout().map(|mut host| host.write_all(&line.0[..line.1]));
 }
 
+static HALFWORDS: [u16; 1024] = {
+    let mut table = [0; 1024];
+    let mut i = 0;
+    while i < table.len() {
+        table[i] = (i * 61) as u16;
+        i += 1;
+    }
+    table
+};
+
+static WORDS: [u32; 1024] = {
+    let mut table = [0; 1024];
+    let mut i = 0;
+    while i < table.len() {
+        table[i] = (i as u32).wrapping_mul(0x3456_789B);
+        i += 1;
+    }
+    table
+};
+
 #[cortex_m_rt::entry]
 fn main() -> ! {
     let mut random = Random(2_463_534_242);
-    let table: Table = core::array::from_fn(|i| (i * 61) as u16);
-    let [rgb, bgr, swapped] = [Format::Rgb, Format::Bgr, Format::Swapped].map(Kernel::Channels);
     let kernels = [
-        (Kernel::Ramp, true),
-        (Kernel::Ramp, false),
-        (Kernel::Solid, true),
-        (Kernel::Solid, false),
-        (rgb, true),
-        (bgr, true),
-        (swapped, true),
+        (Kernel::Ramp(2, 10), true),
+        (Kernel::Ramp(2, 10), false),
+        (Kernel::Solid(2), true),
+        (Kernel::Solid(2), false),
+        (Kernel::Channels(RGB565), true),
+        (Kernel::Channels(BGR565), true),
+        (Kernel::Channels(SWAPPED), true),
+        (Kernel::Ramp(4, 9), true),
+        (Kernel::Ramp(4, 9), false),
+        (Kernel::Ramp(4, 10), true),
+        (Kernel::Ramp(4, 10), false),
+        (Kernel::Solid(4), true),
+        (Kernel::Solid(4), false),
+        (Kernel::Channels(RGB666), true),
+        (Kernel::Channels(RGB888), true),
+        (Kernel::Channels(LIGHT565), true),
+        (Kernel::Channels(LIGHT332), true),
     ];
+    let kernels = || kernels.into_iter().filter(|(kernel, _)| kernel.bytes() == 2 || WORDS_AVAILABLE);
     let (mut cases, mut pixels) = (0u32, 0u32);
-    for (kernel, has_depth) in kernels {
+    for (kernel, has_depth) in kernels() {
         for number in 0..CASES {
             let case = case(&mut random, kernel, has_depth);
             let [l, r] = [line(&mut random, case.width), line(&mut random, case.width)];
@@ -201,13 +322,13 @@ fn main() -> ! {
                 pixels: [0x5555; PIXELS + 2 * GUARD],
                 depth: [0; PIXELS + 2 * GUARD],
                 sides: [l[0], l[1], r[0], r[1]],
-                plane: plane(&mut random, Kernel::Ramp),
+                plane: plane(&mut random, Kernel::Solid(2)),
                 levels: [plane(&mut random, kernel), plane(&mut random, kernel), plane(&mut random, kernel)],
             };
             let far = random.next() as u16;
             state.depth.iter_mut().step_by(3).for_each(|depth| *depth = far);
             let mut by_loop = state.clone();
-            let (count, expected) = (case.by_kernel(&mut state, &table), case.by_loop(&mut by_loop, &table));
+            let (count, expected) = (case.by_kernel(&mut state), case.by_loop(&mut by_loop));
             if count != Some(expected) || state != by_loop {
                 say(format_args!("{kernel:?} {has_depth} differs in case {number}: count {count:?} {expected}"));
                 say(format_args!("{} {} {} {:?}", case.width, case.first, case.height, case.turn));
@@ -219,8 +340,16 @@ fn main() -> ! {
         }
     }
     // Rows that do not fit change nothing: too few pixels, too little depth, and more than each limit.
-    let fits =
-        Case { kernel: Kernel::Ramp, has_depth: true, width: 20, first: 10, height: 10, turn: Turn::default(), colours: [0; 2], raise: 0 };
+    let fits = Case {
+        kernel: Kernel::Solid(2),
+        has_depth: true,
+        width: 20,
+        first: 10,
+        height: 10,
+        turn: Turn::default(),
+        colours: [0; 2],
+        raise: 0,
+    };
     let turn = |height| Turn { height, is_right: true, line: [0, 0] };
     let others = [
         Case { width: 21, first: 19, ..fits },
@@ -235,7 +364,7 @@ fn main() -> ! {
         Case { width: MAX_WIDTH + 1, first: 0, height: 0, ..fits },
         Case { width: usize::MAX / 20 + 1, first: 10, height: 10, ..fits },
     ];
-    for (kernel, has_depth) in kernels {
+    for (kernel, has_depth) in kernels() {
         for (number, case) in others.iter().enumerate() {
             let case = Case { kernel, has_depth, ..*case };
             let before = State {
@@ -246,7 +375,7 @@ fn main() -> ! {
                 levels: [[1 << 29, 1, 1]; 3],
             };
             let mut state = before.clone();
-            let count = case.by_kernel(&mut state, &table);
+            let count = case.by_kernel(&mut state);
             if count != Some(0) || state != before {
                 say(format_args!("{kernel:?} {has_depth} draws rows that do not fit: {number}, count {count:?}"));
                 debug::exit(debug::EXIT_FAILURE);
