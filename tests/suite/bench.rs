@@ -231,14 +231,14 @@ fn styles_have_not_grown() {
     let count = |processor| few.iter().filter(|entry| entry.processor == processor).count();
     assert_eq!([Processor::CortexM3, Processor::CortexM4F].map(count), [22, 4]);
     measured_again("styles.csv", &few);
-    // Every style is recorded, and each takes other instructions than the plain one, but for the format in which only red and blue are exchanged.
+    // Every style is recorded, and each takes other instructions than the plain one, but for formats whose kernels differ only in numbers that assembler has.
     for style in &STYLES {
         let of = |style: &BoardStyle| {
             let of_scene = |entry: &&Entry| (entry.processor, entry.scene.as_str()) == (Processor::CortexM3, "peer-sphere-plastic");
             let frame = |entry: &&Entry| of_scene(entry) && entry.shader == Shader::PHONG && entry.style == style;
             all.iter().find(frame).unwrap_or_else(|| panic!("no costs of {}", style.name)).instructions
         };
-        let is_alike = ["plain", "bgr565"].contains(&style.name);
+        let is_alike = ["plain", "bgr565", "rgb666"].contains(&style.name);
         assert!((of(style).abs_diff(of(PLAIN)) < of(PLAIN) / 10_000) == is_alike, "{}: {}", style.name, of(style));
     }
 }
