@@ -229,6 +229,9 @@ impl<const R: u32, const G: u32, const B: u32> Pixel for Light<R, G, B> {
     drawn_by_kernels!(u32, 1, numbers, u32::from, for_shown, [R, G, B]);
 }
 
+// Loops in Rust draw light for displays with other bits, of which there are no kernels.
+const _: () = assert!(Light::<5, 6, 5>::HAS_KERNELS == kernels::WORDS_AVAILABLE && !Light::<4, 4, 4>::HAS_KERNELS);
+
 /// A pixel of grey light for a display with `DEPTH` bits of grey, less than eight. See [`Light`].
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, FromBytes, IntoBytes, Immutable, KnownLayout)]
 #[repr(transparent)]

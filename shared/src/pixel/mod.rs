@@ -265,7 +265,8 @@ pub trait Pixel: PixelFormat {
 /// of an entry of a table, and what evaluates an expression in which `FORMAT` is the format.
 macro_rules! drawn_by_kernels {
     ($type:ident, $tables:literal, $numbers:expr, $number:expr, $for_format:ident $(, $format:expr)?) => {
-        const HAS_KERNELS: bool = if size_of::<$type>() == 2 { kernels::AVAILABLE } else { kernels::WORDS_AVAILABLE };
+        const HAS_KERNELS: bool = $for_format!(FORMAT, $($format,)? Some(FORMAT)).is_some()
+            && if size_of::<$type>() == 2 { kernels::AVAILABLE } else { kernels::WORDS_AVAILABLE };
 
         #[inline]
         fn entries(ramp: &[Self::Stored; $crate::format::RAMP]) -> Option<kernels::Entries<'_>> {
