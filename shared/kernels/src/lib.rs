@@ -662,8 +662,9 @@ impl<'a> Lit<'a> {
         self
     }
 
-    /// Fills `rows` of the pixels of a band, with a depth test. The numerators of `fields` are those that [`Colours`] tells. Returns the number of pixels between the sides. If the
-    /// rows do not lie within the slices, a limit is exceeded, a field is missing, or pixels have other bytes, it is 0, and nothing changes.
+    /// Fills `rows` of the pixels of a band, with a depth test. The numerators of `fields` are those that [`Colours`] tells. Returns the number of pixels between
+    /// the sides. If the rows do not lie within the slices, a limit is exceeded, a field is missing, or pixels have another number of bytes than those of the
+    /// format, it is 0, and nothing changes.
     #[must_use]
     pub fn fill<T: Stored>(&self, pixels: &mut [T], rows: Rows<'_>, depth: &mut Plane, fields: &mut Fields<'_>) -> u32 {
         #[cfg(kernels = "armv7m")]

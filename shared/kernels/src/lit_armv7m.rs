@@ -5,7 +5,6 @@
 //! depth test, so a hidden pixel takes six instructions.
 
 use crate::{COUNTED, Fields, FormatParts, LitJob, Plane, Sides};
-use core::arch::naked_asm;
 
 /// Offset of the numerators, each: its slope, its value to the left of the row, its value at column 0 of the coming row, and its step to the next row. Three
 /// words of each quadratic precede them: its value to the left of the row, its slope there, and half its bend.
@@ -74,7 +73,7 @@ macro_rules! pack {
             $blue,
             concat!("usat ", $green, ", #{blue}, ", $green, ", asr #30 - {blue}\n"),
             add_blue!("r3", $green),
-            store!("r3", "[r0, r10", "]"),
+            transfer!("str", "r3", "[r0, r10", "]"),
         )
     };
 }
@@ -111,7 +110,7 @@ macro_rules! kernel {
 }
 
 /// Defines a kernel for one quadratic and for the numerators of these numbers. `$second` is 1 if there is a second quadratic, otherwise there is none. `$enter`
-/// loads what each pixel of a row needs. `$pixel` makes the pixel of number `r10`, and stores it by [`store`] and its depth by [`store_depth`]. It
+/// loads what each pixel of a row needs. `$pixel` makes the pixel of number `r10`, and stores it by [`transfer`] and its depth by [`store_depth`]. It
 /// goes to 3 before that if the surface has a hole there. It finds the colours of the row in `r12`. It may overwrite `r3` to `r9` and `lr`, but none of `r0`
 /// to `r2` and `r10` to `r12`.
 macro_rules! rows {
@@ -126,8 +125,8 @@ macro_rules! rows {
             fields: &mut Fields<'_>,
             job: &LitJob,
         ) -> u32 {
-            naked_asm!(
-                uses_format!(),
+            assembler!(
+                [
                 "push {{r0-r2, r4-r11, lr}}",
                 "sub sp, #{turn} + 16",
                 "ldm r0, {{r4-r7}}",
@@ -259,22 +258,12 @@ macro_rules! rows {
                 )*
                 "add sp, #{turn} + 28",
                 "pop {{r4-r11, pc}}",
+                ],
                 numerators = const numerators(0 $(+ $second)?),
                 constants = const constants([$($number),*].len(), 0 $(+ $second)?),
                 changing = const changing([$($number),*].len(), 0 $(+ $second)?),
                 turn = const turn([$($number),*].len(), 0 $(+ $second)?),
                 one = const 1 << COUNTED,
-                bytes = const FormatParts::of(FORMAT).bytes,
-                red = const FormatParts::of(FORMAT).bits[0],
-                green = const FormatParts::of(FORMAT).bits[1],
-                blue = const FormatParts::of(FORMAT).bits[2],
-                red_at = const FormatParts::of(FORMAT).lowest[0],
-                green_at = const FormatParts::of(FORMAT).lowest[1],
-                blue_at = const FormatParts::of(FORMAT).lowest[2],
-                red_shown = const FormatParts::of(FORMAT).shown[0],
-                green_shown = const FormatParts::of(FORMAT).shown[1],
-                blue_shown = const FormatParts::of(FORMAT).shown[2],
-                is_swapped = const FormatParts::of(FORMAT).is_swapped,
             )
         }
     };
@@ -579,8 +568,8 @@ macro_rules! colour {
             "bic r4, r4, r4, asr #31\n",
             $add,
             "\n ubfx r4, r4, #19, #9\n",
-            load!("r4", "[r12, r4", "]"),
-            store!("r4", "[r0, r10", "]"),
+            transfer!("ldr", "r4", "[r12, r4", "]"),
+            transfer!("str", "r4", "[r0, r10", "]"),
         )
     };
 }

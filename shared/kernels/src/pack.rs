@@ -1,21 +1,11 @@
 //! Parts of kernels that depend on the pixel format: channels are packed, and pixels are loaded and stored. They use the names of [`crate::FormatParts`].
 
-/// Loads a pixel from a place, which is given in two parts, around what multiplies an index by the bytes of a pixel.
-macro_rules! load {
-    ($pixel:literal, $place:literal, $end:literal) => {
+/// Loads or stores a pixel, as `$operation` says. A place is given in two parts, around what multiplies an index by the bytes of a pixel.
+macro_rules! transfer {
+    ($operation:literal, $pixel:literal, $place:literal, $end:literal) => {
         concat!(
-            concat!(".if {bytes} == 4\n ldr ", $pixel, ", ", $place, ", lsl #2", $end, "\n"),
-            concat!(".else\n ldrh ", $pixel, ", ", $place, ", lsl #1", $end, "\n.endif\n"),
-        )
-    };
-}
-
-/// Stores a pixel, likewise.
-macro_rules! store {
-    ($pixel:literal, $place:literal, $end:literal) => {
-        concat!(
-            concat!(".if {bytes} == 4\n str ", $pixel, ", ", $place, ", lsl #2", $end, "\n"),
-            concat!(".else\n strh ", $pixel, ", ", $place, ", lsl #1", $end, "\n.endif\n"),
+            concat!(".if {bytes} == 4\n ", $operation, " ", $pixel, ", ", $place, ", lsl #2", $end, "\n"),
+            concat!(".else\n ", $operation, "h ", $pixel, ", ", $place, ", lsl #1", $end, "\n.endif\n"),
         )
     };
 }
@@ -45,9 +35,26 @@ macro_rules! add_blue {
     };
 }
 
-/// Uses all names, because a name that a kernel does not use would be an error.
-macro_rules! uses_format {
-    () => {
-        ".if {bytes} + {red} + {green} + {blue} + {red_at} + {green_at} + {blue_at} + {red_shown} + {green_shown} + {blue_shown} + {is_swapped}\n .endif"
+/// The assembler of a kernel of the format `FORMAT`, whose parts have names there. All of them are used once, because a name that is not used would be an
+/// error.
+macro_rules! assembler {
+    ([$($line:expr),* $(,)?], $($name:ident = const $value:expr,)*) => {
+        core::arch::naked_asm!(
+            ".if {bytes} + {red} + {green} + {blue} + {red_at} + {green_at} + {blue_at}",
+            ".if {red_shown} + {green_shown} + {blue_shown} + {is_swapped}\n .endif\n .endif",
+            $($line,)*
+            $($name = const $value,)*
+            bytes = const FormatParts::of(FORMAT).bytes,
+            red = const FormatParts::of(FORMAT).bits[0],
+            green = const FormatParts::of(FORMAT).bits[1],
+            blue = const FormatParts::of(FORMAT).bits[2],
+            red_at = const FormatParts::of(FORMAT).lowest[0],
+            green_at = const FormatParts::of(FORMAT).lowest[1],
+            blue_at = const FormatParts::of(FORMAT).lowest[2],
+            red_shown = const FormatParts::of(FORMAT).shown[0],
+            green_shown = const FormatParts::of(FORMAT).shown[1],
+            blue_shown = const FormatParts::of(FORMAT).shown[2],
+            is_swapped = const FormatParts::of(FORMAT).is_swapped,
+        )
     };
 }
