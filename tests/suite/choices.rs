@@ -308,10 +308,12 @@ fn auto_is_nearly_as_cheap_as_true_errors_allow() {
         let mut drawn = [[0; METHODS.len()]; BUDGETS.len()];
         for (&facet, points) in &pixels {
             let facet = &frame.facets[facet as usize];
-            let exact = oracle::phong(&frame, facet);
+            let exact: Vec<_> = points.iter().copied().map(oracle::phong(&frame, facet)).collect();
             let errors = METHODS.map(|method| {
                 let shade = oracle::method(method.name(), &frame, facet).expect("a method of all scenes");
-                points.iter().flat_map(|&p| (0..3).map(|k| (shade(p)[k] - exact(p)[k]).abs()).collect::<Vec<_>>()).fold(0.0, f64::max)
+                let error =
+                    |(&p, exact): (&[f64; 2], &[f64; 3])| shade(p).iter().zip(exact).map(|(a, b)| (a - b).abs()).fold(0.0, f64::max);
+                points.iter().zip(&exact).map(error).fold(0.0, f64::max)
             });
             for (drawn, budget) in drawn.iter_mut().zip(BUDGETS) {
                 let method = cheapest_first.into_iter().find(|&method| errors[method] <= f64::from(budget)).expect("Phong shading");
