@@ -1,7 +1,7 @@
 //! The memory of a renderer. All sizes follow from one configuration, [`Layout`].
 
 use crate::{
-    edges::Edge,
+    edges::FeatureEdge,
     features::LIGHTS,
     geometry::{bin::Entry, projection::ScreenVertex},
     lighting::reflectance::Reflectance,
@@ -224,7 +224,7 @@ impl Layout {
             + padded(self.materials * size_of::<Reflectance>())
             + padded(self.tables() * size_of::<HighlightLut>())
             + padded(self.materials * size_of::<ErrorBounds>())
-            + padded(edges * size_of::<Edge>())
+            + padded(edges * size_of::<FeatureEdge>())
             + padded(edge_entries * size_of::<Entry>())
             + padded(marks)
             + padded(places * size_of::<u16>())
@@ -251,7 +251,7 @@ const fn padded(bytes: usize) -> usize {
 const _: () = {
     assert!(size_of::<ScreenVertex>() == 32 && size_of::<Entry>() == 8 && size_of::<ActiveTriangle>() == 128);
     assert!(!LIGHTS || size_of::<Reflectance>() == 396);
-    assert!(size_of::<HighlightLut>() == 8200 && size_of::<Edge>() == 16);
+    assert!(size_of::<HighlightLut>() == 8200 && size_of::<FeatureEdge>() == 16);
 };
 
 /// The memory of a renderer, divided into its parts.
@@ -283,7 +283,7 @@ pub(crate) struct Memory<'a> {
 #[derive(Debug, Default)]
 pub(crate) struct Smoothing<'a> {
     /// The edges of a frame.
-    pub(crate) edges: &'a mut [Edge],
+    pub(crate) edges: &'a mut [FeatureEdge],
     /// Entries of the lists of edges.
     pub(crate) entries: &'a mut [Entry],
     /// Marks of the pixels of a band. They are 0 between two bands.

@@ -9,8 +9,8 @@
 //! lights.
 
 use microphong::method::{
-    Canvas, Facts, Highlight, HighlightField, Method, RANGE, Shading, Source, TriangleSetup, VertexLight, cosine, cosines::phong::Phong,
-    levels::gouraud::Gouraud,
+    Canvas, Facts, Highlight, HighlightField, LEVEL_RANGE, Method, Shading, Source, TriangleSetup, VertexLight, cosine,
+    cosines::phong::Phong, levels::gouraud::Gouraud,
 };
 
 static FACTS: Facts = Facts {
@@ -46,7 +46,7 @@ fn draw(setup: &TriangleSetup<'_>, shading: &Shading<'_>, canvas: &mut dyn Canva
         return Gouraud.shade(setup, shading, canvas);
     }
     let levels = setup.corners.map(|corner| shading.reflectance.one_light([corner.light[0], corner.light[1]]));
-    shading.draw_levels::<3, RANGE>(setup, levels, canvas)
+    shading.draw_levels::<3, LEVEL_RANGE>(setup, levels, canvas)
 }
 
 /// No light's highlight reaches a visible level anywhere on the triangle.

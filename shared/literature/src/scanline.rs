@@ -29,7 +29,7 @@ where
 /// The edges of a triangle: 0 from its top to its right corner, 1 on to its left one, 2 back to the top.
 #[derive(Clone, Copy, Debug)]
 pub struct Edges {
-    edges: [Edge; 3],
+    edges: [ScannedEdge; 3],
     /// Heights of the top, right and left corner.
     heights: [i32; 3],
     /// Twice the area, 1/256 pixel².
@@ -38,7 +38,7 @@ pub struct Edges {
 
 /// An edge, 1/16 pixel.
 #[derive(Clone, Copy, Debug)]
-struct Edge {
+struct ScannedEdge {
     start: [i32; 2],
     run: [i32; 2],
     /// Height, upwards or downwards, at least 1.
@@ -48,7 +48,7 @@ struct Edge {
     zeros: u32,
 }
 
-impl Edge {
+impl ScannedEdge {
     fn new(start: [i32; 2], end: [i32; 2]) -> Self {
         let run = [end[0].wrapping_sub(start[0]), end[1].wrapping_sub(start[1])];
         let height = run[1].wrapping_abs().max(1);
@@ -73,7 +73,7 @@ impl Edges {
     /// The edges of `setup`.
     pub fn new(setup: &TriangleSetup<'_>) -> Self {
         let [top, right, left] = setup.corners.map(|corner| [corner.x, corner.y]);
-        let edges = [Edge::new(top, right), Edge::new(right, left), Edge::new(left, top)];
+        let edges = [ScannedEdge::new(top, right), ScannedEdge::new(right, left), ScannedEdge::new(left, top)];
         let [first, ..] = edges;
         Self { edges, heights: [top[1], right[1], left[1]], area: first.inside(left) }
     }

@@ -10,14 +10,14 @@ use crate::{
         product::{product, rounded},
         quotient::long,
     },
-    edges::{Edge, Place, is_near},
+    edges::{FeatureEdge, ScreenPoint, is_near},
     format::SUBPIXEL,
     math::vector::{cross, map, sub, zip},
 };
 
 /// A triangle on the screen.
 pub(crate) struct Flat {
-    corners: [Place; 3],
+    corners: [ScreenPoint; 3],
     /// Its normal in the space of screen coordinates and inverse depth.
     normal: [i64; 3],
 }
@@ -25,7 +25,7 @@ pub(crate) struct Flat {
 impl Flat {
     /// The triangle of these corners, clockwise on the screen. Returns `None` if its back or its rim is seen, or if a corner lies far outside of the
     /// picture.
-    pub(crate) fn new(corners: [Place; 3]) -> Option<Self> {
+    pub(crate) fn new(corners: [ScreenPoint; 3]) -> Option<Self> {
         let [a, b, c] = corners;
         if !(is_near(a) && is_near(b) && is_near(c)) {
             return None;
@@ -45,7 +45,7 @@ impl Flat {
     }
 
     /// The two points of the rim at which a plane, from which the corners have these distances, cuts it.
-    fn cut(&self, [a, b, c]: [i64; 3]) -> Option<[Place; 2]> {
+    fn cut(&self, [a, b, c]: [i64; 3]) -> Option<[ScreenPoint; 2]> {
         let [p, q, r] = self.corners;
         // The corner that is alone on its side, and then the others.
         let [(p, a), (q, b), (r, c)] = match (a >= 0, b >= 0, c >= 0) {
@@ -68,21 +68,22 @@ impl Flat {
     }
 
     /// The edge at which this triangle and another one cut each other, if they do.
-    pub(crate) fn edge(&self, other: &Self) -> Option<Edge> {
+    pub(crate) fn edge(&self, other: &Self) -> Option<FeatureEdge> {
         let distances = self.distances(other);
         let (one, two) = (self.cut(other.distances(self))?, other.cut(distances)?);
         let [from, to] = common(one, two)?;
         // The corner of the other triangle that is farthest from the plane, and whether it is in front of it: there the other surface is seen.
-        let farthest = |farthest: (i64, Place), corner: (i64, Place)| if corner.0.abs() > farthest.0.abs() { corner } else { farthest };
+        let farthest =
+            |farthest: (i64, ScreenPoint), corner: (i64, ScreenPoint)| if corner.0.abs() > farthest.0.abs() { corner } else { farthest };
         let (distance, corner) = distances.into_iter().zip(other.corners).fold((0, from), farthest);
         let ([dx, dy, _], [x, y, _]) = (sub(to, from), sub(corner, from));
         let is_right = i64::from(dx) * i64::from(y) > i64::from(dy) * i64::from(x);
-        Edge::new(if is_right == (distance > 0) { [to, from] } else { [from, to] }, self.range(), other.range())
+        FeatureEdge::new(if is_right == (distance > 0) { [to, from] } else { [from, to] }, self.range(), other.range())
     }
 }
 
 /// The point between two corners where a distance is 0 that is `a` at the first and `b` at the second, which have opposite signs.
-fn between(from: Place, to: Place, [a, b]: [i64; 2]) -> Place {
+fn between(from: ScreenPoint, to: ScreenPoint, [a, b]: [i64; 2]) -> ScreenPoint {
     let (a, whole) = (a.unsigned_abs(), a.abs_diff(b));
     // To 16 bits: the point is off by 2^-15 of the distance between the corners.
     let less = 48u32.saturating_sub(whole.leading_zeros());
@@ -91,10 +92,10 @@ fn between(from: Place, to: Place, [a, b]: [i64; 2]) -> Place {
 }
 
 /// The part that two parts of one line have in common.
-fn common(one: [Place; 2], two: [Place; 2]) -> Option<[Place; 2]> {
+fn common(one: [ScreenPoint; 2], two: [ScreenPoint; 2]) -> Option<[ScreenPoint; 2]> {
     let [dx, dy, _] = sub(one[1], one[0]).map(i32::abs);
-    let along = |&[x, y, _]: &Place| if dx >= dy { x } else { y };
-    let ordered = |[from, to]: [Place; 2]| if along(&from) <= along(&to) { [from, to] } else { [to, from] };
+    let along = |&[x, y, _]: &ScreenPoint| if dx >= dy { x } else { y };
+    let ordered = |[from, to]: [ScreenPoint; 2]| if along(&from) <= along(&to) { [from, to] } else { [to, from] };
     let ([a, b], [c, d]) = (ordered(one), ordered(two));
     let from = if along(&a) >= along(&c) { a } else { c };
     let to = if along(&b) <= along(&d) { b } else { d };

@@ -1,7 +1,7 @@
 //! The outlines of a mesh: edges at which its visible surface ends, and edges at which its shading jumps.
 
 use crate::{
-    edges::{Edge, Place, cut::Flat},
+    edges::{FeatureEdge, ScreenPoint, cut::Flat},
     features::TRANSPARENCY,
     geometry::{
         bin::Entry,
@@ -64,7 +64,7 @@ impl Outlined<'_> {
     /// Calls `put` with the outlines of `entries`, which are all triangles of the mesh that face the viewer, and are in the set `facing`. They begin
     /// with number `first` in the frame.
     #[inline(never)]
-    pub(crate) fn outlines(&self, entries: &[Entry], first: u32, facing: &Set, put: &mut dyn FnMut(&Edge)) {
+    pub(crate) fn outlines(&self, entries: &[Entry], first: u32, facing: &Set, put: &mut dyn FnMut(&FeatureEdge)) {
         for entry in entries {
             let triangle = entry.key.triangle().wrapping_sub(first) as usize;
             let Some(&Neighbours([a, b, c])) = self.neighbours.get(triangle) else { continue };
@@ -80,7 +80,7 @@ impl Outlined<'_> {
 
     /// Calls `put` with the outlines that belong to a triangle that faces the viewer. `faces` tells of each neighbour whether it does so, too.
     #[inline(never)]
-    pub(crate) fn edges(&self, triangle: usize, faces: impl Fn(u16) -> bool, put: &mut dyn FnMut(&Edge)) {
+    pub(crate) fn edges(&self, triangle: usize, faces: impl Fn(u16) -> bool, put: &mut dyn FnMut(&FeatureEdge)) {
         let Some(&Neighbours(neighbours)) = self.neighbours.get(triangle) else { return };
         for (k, neighbour) in neighbours.into_iter().enumerate() {
             let other = neighbour & OPEN;
@@ -94,7 +94,7 @@ impl Outlined<'_> {
 
     /// Calls `put` with edge `k` of a triangle. The triangle `other` is seen beyond the edge, if any is.
     #[inline(never)]
-    fn put(&self, triangle: usize, k: usize, other: Option<usize>, put: &mut dyn FnMut(&Edge)) {
+    fn put(&self, triangle: usize, k: usize, other: Option<usize>, put: &mut dyn FnMut(&FeatureEdge)) {
         let Some(triangle) = self.triangles.get(triangle) else { return };
         // Seen from the front, corners run counter-clockwise, and the surface lies to the left.
         let [a, b, c] = triangle.corners;
@@ -119,14 +119,14 @@ impl Outlined<'_> {
         };
         // The depth of a transparent surface is not known: whatever is seen beside its edge lies behind it, or the surface beyond is nearer.
         let range = if TRANSPARENCY && self.is_transparent { i32::MAX } else { range };
-        if let Some(edge) = Edge::new([from, to], range, beyond) {
+        if let Some(edge) = FeatureEdge::new([from, to], range, beyond) {
             put(&edge);
         }
     }
 
     /// The place of a corner on the screen, if it is cached and need not be clipped.
     #[inline]
-    fn cached(&self, corner: u16) -> Option<Place> {
+    fn cached(&self, corner: u16) -> Option<ScreenPoint> {
         let vertex = self.cached.get(usize::from(corner)).filter(|vertex| vertex.state == State::READY)?;
         Some([vertex.x, vertex.y, vertex.depth])
     }
@@ -134,7 +134,7 @@ impl Outlined<'_> {
     /// The part of an edge that can be projected.
     #[cold]
     #[inline(never)]
-    fn clipped(&self, ends: [u16; 2]) -> Option<[Place; 2]> {
+    fn clipped(&self, ends: [u16; 2]) -> Option<[ScreenPoint; 2]> {
         let [from, to] = ends.map(|corner| self.vertices.get(usize::from(corner)));
         clip_edge(self.view, [from?, to?])
     }
@@ -160,7 +160,7 @@ impl Outlined<'_> {
     /// The place of a corner that is not cached.
     #[cold]
     #[inline(never)]
-    fn projected(&self, corner: u16) -> Option<Place> {
+    fn projected(&self, corner: u16) -> Option<ScreenPoint> {
         let position = self.vertices.get(usize::from(corner))?.position;
         let (place, inside) = self.view.lens.project(self.view.to_eye(position));
         inside.then_some(place)

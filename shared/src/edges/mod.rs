@@ -27,11 +27,11 @@ use crate::{
 };
 use zerocopy::{FromBytes, Immutable, IntoBytes, KnownLayout};
 
-/// An edge on the screen. The surface lies to its right, seen along the edge from its first end to its second one. It is aligned, so that it is
-/// copied word by word.
+/// An edge of a mesh that is seen as a line on the screen: a silhouette, a border, a crease, or where two surfaces cut each other. The surface lies to
+/// its right, seen along the edge from its first end to its second one. It is aligned, so that it is copied word by word.
 #[derive(FromBytes, IntoBytes, Immutable, KnownLayout, Clone, Copy, Debug, Default, PartialEq, Eq)]
 #[repr(C, align(4))]
-pub(crate) struct Edge {
+pub(crate) struct FeatureEdge {
     /// The ends `[x, y]`, in 1/16 pixel.
     ends: [[i16; 2]; 2],
     /// The inverse depth at both ends, in the format of the depth buffer.
@@ -44,18 +44,18 @@ pub(crate) struct Edge {
 }
 
 /// A point on the screen: `[x, y, inverse depth]`, as [`crate::geometry::lens::Lens::project`] returns it.
-pub(crate) type Place = [i32; 3];
+pub(crate) type ScreenPoint = [i32; 3];
 
 /// The largest coordinate of an edge, in 1/16 pixel. It lies beyond the widest picture.
 const FARTHEST: i32 = i16::MAX as i32;
 
-impl Edge {
+impl FeatureEdge {
     /// The edge between two points of a surface whose corners span a `range` of depth, see [`Self::range`] and [`Self::beyond`]. Returns `None` if it
     /// lies far outside of the picture.
     #[inline]
-    pub(crate) fn new([from, to]: [Place; 2], range: i32, beyond: i32) -> Option<Self> {
+    pub(crate) fn new([from, to]: [ScreenPoint; 2], range: i32, beyond: i32) -> Option<Self> {
         let [from, to] = if is_near(from) && is_near(to) { [from, to] } else { cut([from, to])? };
-        let place = |[x, y, _]: Place| [x as i16, y as i16];
+        let place = |[x, y, _]: ScreenPoint| [x as i16, y as i16];
         let at_least = |range| in_buffer(range).saturating_add(2);
         let (range, beyond) = (at_least(range), at_least(beyond));
         Some(Self { ends: [place(from), place(to)], depth: [in_buffer(from[2]), in_buffer(to[2])], range, beyond })
@@ -92,18 +92,18 @@ fn in_buffer(depth: i32) -> u16 {
 }
 
 #[inline]
-fn is_near([x, y, _]: Place) -> bool {
+fn is_near([x, y, _]: ScreenPoint) -> bool {
     (x.wrapping_add(FARTHEST) | y.wrapping_add(FARTHEST)) as u32 <= 2 * FARTHEST as u32
 }
 
 /// Cuts an edge to coordinates that fit 16 bits.
 #[cold]
 #[inline(never)]
-fn cut(mut ends: [Place; 2]) -> Option<[Place; 2]> {
+fn cut(mut ends: [ScreenPoint; 2]) -> Option<[ScreenPoint; 2]> {
     for (is_row, sign) in [(false, 1), (false, -1), (true, 1), (true, -1)] {
-        let distance = |[x, y, _]: Place| i64::from(FARTHEST - sign * if is_row { y } else { x });
+        let distance = |[x, y, _]: ScreenPoint| i64::from(FARTHEST - sign * if is_row { y } else { x });
         // The point of the border between an inner end at the distance `d` and an outer one at the distance `e`.
-        let border = |inner: Place, outer: Place, d: i64, e: i64| -> Place {
+        let border = |inner: ScreenPoint, outer: ScreenPoint, d: i64, e: i64| -> ScreenPoint {
             let mixed = |from: i32, to: i32| from + ((i64::from(to) - i64::from(from)) * d).checked_div(d - e).unwrap_or(0) as i32;
             let [x, y, depth] = zip(inner, outer, mixed);
             if is_row { [x, sign * FARTHEST, depth] } else { [sign * FARTHEST, y, depth] }

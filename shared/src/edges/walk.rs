@@ -5,7 +5,7 @@
 
 use crate::{
     arch::quotient::{fraction, inverse},
-    edges::Edge,
+    edges::FeatureEdge,
     format::SUBPIXEL,
 };
 use core::ops::Range;
@@ -186,9 +186,9 @@ impl<'w> Window<'w> {
 
     /// Walks an edge.
     #[inline(never)]
-    pub(crate) fn walk(&mut self, edge: &Edge) {
+    pub(crate) fn walk(&mut self, edge: &FeatureEdge) {
         // One by one: `map` of arrays goes through memory at opt-level "s".
-        let Edge { ends: [[ax, ay], [bx, by]], depth: [a, b], range, beyond } = *edge;
+        let FeatureEdge { ends: [[ax, ay], [bx, by]], depth: [a, b], range, beyond } = *edge;
         let (ax, ay, bx, by) = (i32::from(ax), i32::from(ay), i32::from(bx), i32::from(by));
         let Self { axes: [steep, flat], lines, notes } = self;
         // The major coordinate grows from the first end to the second.
@@ -292,7 +292,7 @@ fn per_corner(half_step: i32) -> i32 {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::edges::{Edge, Place};
+    use crate::edges::{FeatureEdge, ScreenPoint};
 
     const SIDE: i32 = 64;
 
@@ -322,8 +322,8 @@ mod tests {
                 let is_covered = side > 0 || side == 0 && (by < ay || by == ay && bx > ax);
                 if is_covered { 1000 } else { 0 }
             });
-            let place = |x, y| -> Place { [x, y, 1000 << 12] };
-            let edge = Edge::new([place(ax, ay), place(bx, by)], 0, 0).unwrap();
+            let place = |x, y| -> ScreenPoint { [x, y, 1000 << 12] };
+            let edge = FeatureEdge::new([place(ax, ay), place(bx, by)], 0, 0).unwrap();
             let (mut marks, mut places) = ([0; (SIDE * SIDE) as usize], [0; (SIDE * SIDE) as usize]);
             let mut window = Window::new(SIDE as usize, (&(0..SIDE as u32), &depth), &(0..SIDE as u32), false, &mut marks, &mut places);
             window.walk(&edge);
@@ -342,8 +342,8 @@ mod tests {
     #[test]
     fn lines_have_no_gaps_where_no_surface_is_drawn() {
         for (bx, by) in [(900, 300), (300, 900), (120, 700), (720, 90), (500, 500), (880, 497)] {
-            let place = |x, y| -> Place { [x, y, 1000 << 12] };
-            let edge = Edge::new([place(500, 497), place(bx, by)], 0, 0).unwrap();
+            let place = |x, y| -> ScreenPoint { [x, y, 1000 << 12] };
+            let edge = FeatureEdge::new([place(500, 497), place(bx, by)], 0, 0).unwrap();
             for nearest in [0u16, 900, 1100] {
                 let depth = [nearest; (SIDE * SIDE) as usize];
                 let (mut marks, mut places) = ([0u8; (SIDE * SIDE) as usize], [0; (SIDE * SIDE) as usize]);

@@ -1,7 +1,7 @@
 //! What all rows of a frame have in common. It does not change while they are drawn, so two processors can read it at the same time.
 
 use crate::{
-    edges::{Edge, find::Outlined},
+    edges::{FeatureEdge, find::Outlined},
     features::{ANTIALIAS, COLOURED, OBJECTS, REDRAW, TRANSPARENCY},
     format::{ErrorBudget, LEVEL},
     frame::skips::Skips,
@@ -225,7 +225,7 @@ impl<'r> Context<'r> {
 
     /// Calls `put` with the edges of the area to be drawn at which triangles cut each other.
     #[inline(never)]
-    pub(crate) fn each_cut(&self, put: &mut dyn FnMut(&Edge)) {
+    pub(crate) fn each_cut(&self, put: &mut dyn FnMut(&FeatureEdge)) {
         let hull = self.settings.touched(&self.region.hull());
         // Most pairs belong to the meshes of the pair before them.
         let (mut meshes, mut other_meshes) = (None, None);
@@ -275,7 +275,7 @@ impl<'r> Context<'r> {
     /// Calls `put` with every edge of the frame's outlines, for frames that have no list of them.
     #[cold]
     #[inline(never)]
-    pub(crate) fn each_edge(&self, put: &mut dyn FnMut(&Edge)) {
+    pub(crate) fn each_edge(&self, put: &mut dyn FnMut(&FeatureEdge)) {
         let (viewport, hull) = (self.settings.viewport(), self.settings.touched(&self.region.hull()));
         for placed in self.meshes() {
             let Some(outlined) = self.outlined(&placed) else { continue };

@@ -1,7 +1,7 @@
 //! Some rows of a frame, drawn band by band from the top. Two parts share nothing that drawing writes, so they can be drawn at the same time.
 
 use crate::{
-    edges::{Edge, find},
+    edges::{FeatureEdge, find},
     error::RenderError,
     features::{ANTIALIAS, SKIPS},
     frame::{
@@ -303,7 +303,7 @@ impl<'r> FrameRows<'r> {
         let lines = context.settings.outlines.is_some();
         let within = |row: u32| row.max(hull.rows[0].into()).min(hull.rows[1].into()) as u16;
         let area = if lines { hull } else { PixelRect { rows: [within(rows.start), within(rows.end)], ..hull } };
-        let put: &mut dyn FnMut(&Edge) = &mut |edge| smoother.put(edge, &area);
+        let put: &mut dyn FnMut(&FeatureEdge) = &mut |edge| smoother.put(edge, &area);
         let mut rest = bins.count().and_then(|count| entries.get(..count.into())).unwrap_or_default();
         let mut complete = bins.count().is_some();
         for placed in context.meshes().rev() {

@@ -5,7 +5,7 @@
 
 use crate::{
     edges::{
-        Edge,
+        FeatureEdge,
         mix::{Surroundings, draw, store},
         walk::Window,
     },
@@ -25,9 +25,9 @@ use zerocopy::{FromBytes, Immutable, IntoBytes, KnownLayout};
 #[derive(Debug)]
 pub(crate) struct Smoother<'r> {
     /// The edges of the frame.
-    edges: &'r [Edge],
+    edges: &'r [FeatureEdge],
     /// Edges that are being listed.
-    room: &'r mut [Edge],
+    room: &'r mut [FeatureEdge],
     count: usize,
     /// The edges by the rows in which they begin; `None` if some found no room, or antialiasing is off.
     bins: Option<Bins>,
@@ -65,7 +65,7 @@ impl<'r> Smoother<'r> {
     }
 
     /// Adds an edge, if it may mark pixels of `area`.
-    pub(crate) fn put(&mut self, edge: &Edge, area: &PixelRect) {
+    pub(crate) fn put(&mut self, edge: &FeatureEdge, area: &PixelRect) {
         let Some(rows) = edge.rows_in(area) else { return };
         match (self.room.get_mut(self.count), &mut self.bins) {
             (Some(room), Some(bins)) => {

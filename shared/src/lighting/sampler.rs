@@ -17,14 +17,14 @@ use zerocopy::IntoBytes;
 pub type IfTextured<T> = [T; TEXTURED];
 
 /// A place in a texture: columns to the right and rows downwards, in widths and heights of it, Q4.12.
-pub(crate) type Place = [i32; 2];
+pub(crate) type TextureCoordinates = [i32; 2];
 
 /// A place of which a texel is cut: fractions of width and height, in all bits of a word.
 pub(crate) type Aligned = [u32; 2];
 
-/// Fraction bits of a walked place, which is a sixteenth of [`Place`] in the format of cosines.
+/// Fraction bits of a walked place, which is a sixteenth of [`TextureCoordinates`] in the format of cosines.
 pub(crate) const WALKED: u32 = COSINE - 4;
-/// Bits by which a [`Place`] at a corner is shifted to have [`WALKED`] fraction bits.
+/// Bits by which a [`TextureCoordinates`] at a corner is shifted to have [`WALKED`] fraction bits.
 pub(crate) const FINER: u32 = WALKED - TEXTURE;
 
 /// A texture, from which pixels take their colours.
@@ -48,7 +48,7 @@ pub struct Sampler<'f> {
 pub(crate) struct Textured<'f> {
     pub(crate) sampler: &'f Sampler<'f>,
     /// Where the corners lie in it.
-    pub(crate) places: [Place; 3],
+    pub(crate) places: [TextureCoordinates; 3],
     /// Whether the camera is a perspective one.
     pub(crate) in_perspective: bool,
 }
@@ -97,7 +97,7 @@ impl<'f> Sampler<'f> {
     }
 
     /// The largest difference between corners at these places, in texels, Q12.3.
-    pub(crate) fn range(&self, &[[u0, v0], [u1, v1], [u2, v2]]: &[Place; 3]) -> u32 {
+    pub(crate) fn range(&self, &[[u0, v0], [u1, v1], [u2, v2]]: &[TextureCoordinates; 3]) -> u32 {
         let [width, height] = self.size;
         let range = |a: i32, b: i32, c: i32, bits: u8| ((a.max(b).max(c) - a.min(b).min(c)) << bits) as u32 >> (TEXTURE - 3);
         range(u0, u1, u2, width).max(range(v0, v1, v2, height)) + 1

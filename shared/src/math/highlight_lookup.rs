@@ -12,11 +12,11 @@ use crate::{
 use microphong_kernels::Lookup;
 
 /// Fraction bits of a node, in steps of the table.
-const NODE: u32 = 6;
+const STEP_NODE: u32 = 6;
 /// Fraction bits that an interpolated numerator has beyond those of a node.
-pub(crate) const EXTRA: u32 = 5;
+pub(crate) const NUMERATOR_EXTRA: u32 = 5;
 /// Fraction bits of a quotient, in steps of the table: the reciprocal length, Q2.30, is halved, and the upper half of the product taken.
-const STEP: u32 = NODE + EXTRA - 3;
+const STEP: u32 = STEP_NODE + NUMERATOR_EXTRA - 3;
 
 /// Lookup by a quotient: the cosine is an interpolated numerator over a length.
 #[derive(Clone, Copy, Debug)]
@@ -44,12 +44,12 @@ impl<'a> QuotientLookup<'a> {
     /// The node of a numerator, Q2.30: the numerator in steps of the table, Q20.6, rounded down. Domain: within ±2.
     #[inline]
     pub(crate) fn node(&self, cosine: i32) -> i32 {
-        upper_by_half_word(cosine, self.factor) >> (23 - NODE - 16)
+        upper_by_half_word(cosine, self.factor) >> (23 - STEP_NODE - 16)
     }
 
     /// The entry nearest to a quotient, unsigned Q0.16.
     ///
-    /// `quotient` is the upper half of the product of the numerator, in the format of a node with [`EXTRA`] more fraction bits, and half
+    /// `quotient` is the upper half of the product of the numerator, in the format of a node with [`NUMERATOR_EXTRA`] more fraction bits, and half
     /// the reciprocal length, Q2.30. Domain: every quotient that fits; small ones take the last entry. Error: at most
     /// [`crate::math::highlight_lut::NEAREST_ERROR`] for lengths of 1/2 to 1 (tests::entries_are_the_nearest). Source: our own.
     #[inline]
@@ -126,7 +126,8 @@ mod tests {
             for length in [1.0, 0.9, 0.77, 0.6, 0.5] {
                 let half_reciprocal = (f64::from(1 << 29) / length) as i64;
                 let numerator = |cosine: i32| (f64::from(cosine) * length).round() as i32;
-                let quotient = |cosine| (((i64::from(quotients.node(numerator(cosine))) << EXTRA) * half_reciprocal) >> 32) as i32;
+                let quotient =
+                    |cosine| (((i64::from(quotients.node(numerator(cosine))) << NUMERATOR_EXTRA) * half_reciprocal) >> 32) as i32;
                 let worst = error(n, &curve, |cosine| quotients.at(quotient(cosine)));
                 assert!(worst <= NEAREST_ERROR, "quotients, n = {n}, length {length}: {worst}");
             }

@@ -8,7 +8,7 @@ use crate::{
     geometry::clip::Attributes,
     lighting::{
         albedo::{Albedo, IfColoured},
-        sampler::{IfTextured, Place, Sampler, Textured},
+        sampler::{IfTextured, Sampler, TextureCoordinates, Textured},
     },
     raster::triangle::turn,
     stream::{
@@ -30,7 +30,7 @@ pub(crate) struct Painting<'f> {
 #[derive(Clone, Copy)]
 pub(crate) struct Paint {
     albedos: IfColoured<Option<[Albedo; 3]>>,
-    places: IfTextured<Option<[Place; 3]>>,
+    places: IfTextured<Option<[TextureCoordinates; 3]>>,
 }
 
 impl<'f> Painting<'f> {
@@ -88,7 +88,7 @@ fn corner_colours(MeshColours { palette, corners }: &MeshColours<'_>, triangle: 
     Some([colour(i)?, colour(j)?, colour(k)?])
 }
 
-fn places_at(&TextureCorners([a, c, b]): &TextureCorners, by: usize) -> Option<[Place; 3]> {
+fn places_at(&TextureCorners([a, c, b]): &TextureCorners, by: usize) -> Option<[TextureCoordinates; 3]> {
     let [a, b, c] = turn([a, b, c], by);
     let wide = |[u, v]: [u16; 2]| [u.into(), v.into()];
     Some([wide(a), wide(b), wide(c)])
@@ -117,7 +117,7 @@ impl Paint {
     /// The colours of a part of the triangle, at whose corners [`Self::attributes`] are these.
     pub(super) fn of_part(&self, [a, b, c]: [Attributes; 3]) -> Self {
         if let Some(Some(places)) = self.places.first() {
-            let part: IfColoured<[Place; 3]> = from_fn(|k| [a[k], b[k], c[k]].map(|[u, v, _]| [u, v]));
+            let part: IfColoured<[TextureCoordinates; 3]> = from_fn(|k| [a[k], b[k], c[k]].map(|[u, v, _]| [u, v]));
             return Self { places: [Some(part.first().copied().unwrap_or(*places)); TEXTURED], ..*self };
         }
         Self { albedos: from_fn(|k| self.albedos[k].map(|_| [a[k], b[k], c[k]].map(Albedo::of_shares))), ..*self }

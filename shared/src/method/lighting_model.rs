@@ -52,7 +52,7 @@ pub enum Lit<V, D> {
 }
 
 /// The colour of a surface over a triangle.
-struct Coloured<'a, C> {
+struct ColouredSurface<'a, C> {
     painter: Painter<'a, C>,
     /// Where the sums of all highlights begin.
     dark: [i32; 3],
@@ -68,7 +68,7 @@ enum Painter<'a, C> {
     Texture(Placed<'a, PlacePatch>),
 }
 
-impl<C: Patch<Walker: Walker<Value = [u32; 2]>>> Coloured<'_, C> {
+impl<C: Patch<Walker: Walker<Value = [u32; 2]>>> ColouredSurface<'_, C> {
     /// Multiplies the sums of ambient and diffuse light of the `visible` ones of `run` pixels by the colour, and adds highlights. The runs lie `rows` rows
     /// below the current one, left of the column `x`.
     fn paint(&mut self, levels: &mut [[i32; 3]; CHUNK], run: usize, visible: u32, [rows, x]: [i32; 2]) {
@@ -143,7 +143,7 @@ struct ManyLights<'a, 's, K, P, D, W, C, F, S> {
     /// Where the sums of all lights begin.
     ambient: [i32; 3],
     /// The colour of the surface, if the corners have colours.
-    colour: IfColoured<Option<Coloured<'a, C>>>,
+    colour: IfColoured<Option<ColouredSurface<'a, C>>>,
     /// For a run of pixels, what all lights share, and `levels`, the sums of all lights. Both are written before they are read, and so
     /// cleared once a triangle and not once a span.
     shared: &'a mut [S; CHUNK],
@@ -183,7 +183,7 @@ where
             first -= run;
             if TEXTURES
                 && TRANSPARENCY
-                && let Some(Coloured { painter: Painter::Texture(place), .. }) = &colour
+                && let Some(ColouredSurface { painter: Painter::Texture(place), .. }) = &colour
             {
                 target.cover(covered(&enter(place, rows, entry), run));
             }
@@ -293,7 +293,7 @@ impl<'a, 's, K, P, D, W, C, F, S> ManyLights<'a, 's, K, P, D, W, C, F, S> {
     /// The place in a texture, if there is one.
     fn place(&mut self) -> Option<&mut Placed<'a, PlacePatch>> {
         match self.colour.first_mut()? {
-            Some(Coloured { painter: Painter::Texture(place), .. }) if TEXTURES => Some(place),
+            Some(ColouredSurface { painter: Painter::Texture(place), .. }) if TEXTURES => Some(place),
             _ => None,
         }
     }
@@ -437,7 +437,7 @@ impl Shading<'_> {
                 Some(place) => Painter::Texture(place),
                 None => Painter::Corners(shares(&setup.colours_at_nodes()?).map(&painted)),
             };
-            Some(Coloured { painter, dark, highlights: rooms.next()? })
+            Some(ColouredSurface { painter, dark, highlights: rooms.next()? })
         });
         let ambient = if setup.albedos().is_some() { pure } else { ambient };
         setup.draw_spans(&mut ManyLights { reflectance, model, common, lights, diffuse, lut, ambient, colour, shared, levels }, canvas)

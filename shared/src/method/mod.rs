@@ -199,10 +199,10 @@ impl Loops for General {
 }
 
 /// Fraction bits that a walked level has beyond those of a node.
-const EXTRA: u32 = WALK - LEVEL;
+const LEVEL_EXTRA: u32 = WALK - LEVEL;
 /// Bits of the range of levels at nodes: they are in [0, 255] in Q9.7.
 #[doc(hidden)]
-pub const RANGE: u32 = LEVEL + 8;
+pub const LEVEL_RANGE: u32 = LEVEL + 8;
 
 /// N·L and N·H of a constant light at the corners, Q2.30.
 pub(crate) type CornerCosines = [[i32; 3]; 2];
@@ -569,13 +569,13 @@ fn channels_of_many<const N: usize>(levels: [[i32; 3]; N]) -> [[i32; N]; 3] {
 /// blue, each from 0 to 255 in Q9.7 (the integers 0 to 32,640), at `N` points: the 3 corners, or 6 with the midpoints of the edges 0-1, 1-2 and 2-0.
 /// Use [`Walked`] to convert the interpolated values to an [`Intensity`].
 #[must_use]
-pub fn levels_at<const N: usize>(levels: [[i32; 3]; N]) -> Nodes<N, 3, RANGE> {
-    Nodes::new(channels(levels), EXTRA).biased([bias(0); 3])
+pub fn levels_at<const N: usize>(levels: [[i32; 3]; N]) -> Nodes<N, 3, LEVEL_RANGE> {
+    Nodes::new(channels(levels), LEVEL_EXTRA).biased([bias(0); 3])
 }
 
 /// Levels at `N` nodes, Q9.7, as indices of the tables of colours of the pixel format `C`.
 #[inline(always)]
-fn indices<const N: usize, C: Pixel>(levels: [i32; N]) -> Nodes<N, 1, RANGE> {
+fn indices<const N: usize, C: Pixel>(levels: [i32; N]) -> Nodes<N, 1, LEVEL_RANGE> {
     let bits = C::Ramps::BITS;
     let bias = (BIAS << bits).wrapping_add(1 << (bits - 1));
     Nodes::new([levels], bits - LEVEL).biased([bias])
@@ -583,9 +583,9 @@ fn indices<const N: usize, C: Pixel>(levels: [i32; N]) -> Nodes<N, 1, RANGE> {
 
 /// The polynomial through [`indices`].
 #[inline(always)]
-fn fit_levels<const N: usize, C: Pixel>(gradients: &Gradients, levels: [i32; N]) -> <Nodes<N, 1, RANGE> as Field>::Patch
+fn fit_levels<const N: usize, C: Pixel>(gradients: &Gradients, levels: [i32; N]) -> <Nodes<N, 1, LEVEL_RANGE> as Field>::Patch
 where
-    Nodes<N, 1, RANGE>: Field<Patch: Checkerboard>,
+    Nodes<N, 1, LEVEL_RANGE>: Field<Patch: Checkerboard>,
 {
     let patch = indices::<N, C>(levels).fit(gradients);
     if C::Ramps::CHECKERED { patch.checkered(gradients.row()) } else { patch }
@@ -593,7 +593,7 @@ where
 
 /// Levels of three channels at `N` nodes, `raise` more, as [`Rgb`] takes them in the pixel format `C`.
 #[inline(always)]
-fn three_levels<const N: usize, C: Pixel>(channels: [[i32; N]; 3], raise: i32) -> Nodes<N, 3, RANGE> {
+fn three_levels<const N: usize, C: Pixel>(channels: [[i32; N]; 3], raise: i32) -> Nodes<N, 3, LEVEL_RANGE> {
     let [r, g, b] = const {
         let [r, g, b] = C::LEVELS;
         [half_step(r), half_step(g), half_step(b)]
@@ -641,11 +641,11 @@ impl Shading<'_> {
         Nodes<N, 1, BITS>: Field<Value = [u32; 1]>,
         Nodes<N, 3, BITS>: Field<Value = [u32; 3]>,
     {
-        let biases = raises.map(|raise| bias(raise << EXTRA));
+        let biases = raises.map(|raise| bias(raise << LEVEL_EXTRA));
         if self.reflectance.three_channels() {
-            area.draw(&Nodes::<N, 3, BITS>::new(*channels, EXTRA).biased(biases), Walked, canvas)
+            area.draw(&Nodes::<N, 3, BITS>::new(*channels, LEVEL_EXTRA).biased(biases), Walked, canvas)
         } else {
-            area.draw(&Nodes::<N, 1, BITS>::new([channels[0]], EXTRA).biased([biases[0]]), Walked, canvas)
+            area.draw(&Nodes::<N, 1, BITS>::new([channels[0]], LEVEL_EXTRA).biased([biases[0]]), Walked, canvas)
         }
     }
 
@@ -658,7 +658,7 @@ impl Shading<'_> {
         band: &mut Band<'_, C>,
     ) -> u32
     where
-        Nodes<N, 1, RANGE>: Field<Value = [u32; 1], Patch: Checkerboard>,
+        Nodes<N, 1, LEVEL_RANGE>: Field<Value = [u32; 1], Patch: Checkerboard>,
     {
         setup.fill(|| fit_levels::<N, C>(setup.gradients, nodes()), Ramp(tables.ramps), band)
     }
@@ -670,11 +670,11 @@ impl Shading<'_> {
         setup: &TriangleSetup<'_>,
         channels: impl FnOnce() -> [[i32; N]; 3],
         raise: i32,
-        walked: impl FnOnce(<Nodes<N, 3, RANGE> as Field>::Patch) -> P,
+        walked: impl FnOnce(<Nodes<N, 3, LEVEL_RANGE> as Field>::Patch) -> P,
         band: &mut Band<'_, C>,
     ) -> u32
     where
-        Nodes<N, 3, RANGE>: Field,
+        Nodes<N, 3, LEVEL_RANGE>: Field,
     {
         let patch = || walked(three_levels::<N, C>(channels(), raise).fit(setup.gradients));
         setup.fill(patch, Rgb::new(self.reflectance.quarter), band)

@@ -27,7 +27,7 @@ use crate::{
     },
     math::vector::{map, zip},
     method::{
-        EXTRA, IN_SPACE, IntensityShader, LinearWay, RANGE, Shading, TriangleSetup, bias, channels,
+        IN_SPACE, IntensityShader, LEVEL_EXTRA, LEVEL_RANGE, LinearWay, Shading, TriangleSetup, bias, channels,
         node::mixed,
         perspective,
         products::{LinearNodes, QuadraticNodes, fitted, linear, quadratic},
@@ -149,8 +149,9 @@ impl TriangleSetup<'_> {
         Nodes<N, 3, BRIGHT>: Field<Value = [u32; 3]>,
     {
         let brightest = |levels| map(levels, |level: i32| level.min(FULL << SIXTEENTH));
-        let nodes =
-            |levels: [[i32; 3]; N]| Nodes::<N, 3, BRIGHT>::new(channels(levels.map(brightest)), EXTRA - SIXTEENTH).biased([bias(0); 3]);
+        let nodes = |levels: [[i32; 3]; N]| {
+            Nodes::<N, 3, BRIGHT>::new(channels(levels.map(brightest)), LEVEL_EXTRA - SIXTEENTH).biased([bias(0); 3])
+        };
         let field = (nodes(parts.map(|parts| parts.diffuse)), nodes(parts.map(|parts| parts.specular)));
         self.draw_textured(&field, Apart, canvas).unwrap_or(0)
     }
@@ -171,7 +172,7 @@ fn place_nodes(texture: &Textured<'_>, [ab, bc, ca]: [u16; 3]) -> QuadraticNodes
 /// power of two that this is the logarithm of.
 const SIXTEENTH: u32 = 4;
 /// Bits of the range of levels at nodes, of which sixteenths are walked.
-const BRIGHT: u32 = RANGE + SIXTEENTH;
+const BRIGHT: u32 = LEVEL_RANGE + SIXTEENTH;
 /// Likewise for loops of a pixel format, which draw no brighter light: a quarter.
 const QUARTER: u32 = 2;
 
@@ -231,8 +232,8 @@ pub(crate) fn fill<C: Pixel, const N: usize>(
     band: &mut Band<'_, C>,
 ) -> Option<u32>
 where
-    Light<N, 1>: Drawn<1>,
-    Light<N, 3>: Drawn<3>,
+    LightAtNodes<N, 1>: DrawTextured<1>,
+    LightAtNodes<N, 3>: DrawTextured<3>,
 {
     let texture = setup.texture.first()?.as_ref()?;
     let nodes = |levels: fn(&Parts) -> [i32; 3]| parts.each_ref().map(levels);
@@ -240,7 +241,7 @@ where
     // Light without a hue is one level at a pixel.
     let one = || {
         let green = |[_, green, _]: [i32; 3]| green;
-        Light::new([diffuse.map(green)], [specular.map(green)])
+        LightAtNodes::new([diffuse.map(green)], [specular.map(green)])
     };
     if C::GRAY {
         return if GrayTexels::<C>::EXISTS { one().draw(setup, texture, GrayTexels(Ramp(tables.ramps)), band) } else { None };
@@ -253,18 +254,18 @@ where
     }
     let pixels = Texels::<C>::new(quarter);
     let rows = pixels.rows(texture.sampler, N);
-    Light::new(channels(diffuse), channels(specular)).draw(setup, texture, Texels { rows: rows.as_ref(), ..pixels }, band)
+    LightAtNodes::new(channels(diffuse), channels(specular)).draw(setup, texture, Texels { rows: rows.as_ref(), ..pixels }, band)
 }
 
 /// The light of a triangle at `N` nodes, in `CH` channels: what texels reflect of it, and what is added to that.
 #[derive(Clone, Copy)]
-pub(crate) struct Light<const N: usize, const CH: usize> {
+pub(crate) struct LightAtNodes<const N: usize, const CH: usize> {
     /// Quarters of ambient and diffuse light, [`scaled`].
     diffuse: [[i32; N]; CH],
     specular: [[i32; N]; CH],
 }
 
-impl<const N: usize, const CH: usize> Light<N, CH> {
+impl<const N: usize, const CH: usize> LightAtNodes<N, CH> {
     fn new(diffuse: [[i32; N]; CH], specular: [[i32; N]; CH]) -> Self {
         Self { diffuse: diffuse.map(|levels| levels.map(|level| scaled(quarter_of(level)))), specular }
     }
@@ -280,7 +281,7 @@ impl<const N: usize, const CH: usize> Light<N, CH> {
         setup: &TriangleSetup<'_>,
         place: impl FnOnce() -> T,
         fit: impl Fn([[i32; N]; CH]) -> L,
-        pixels: impl Pixels<C, CH>,
+        pixels: impl LitTexels<C, CH>,
         band: &mut Band<'_, C>,
     ) -> u32
     where
@@ -303,7 +304,7 @@ impl<const N: usize, const CH: usize> Light<N, CH> {
     }
 }
 
-impl<const CH: usize> Light<3, CH> {
+impl<const CH: usize> LightAtNodes<3, CH> {
     /// The largest difference between corners, in levels.
     fn range(&self) -> u32 {
         let spread =
@@ -313,46 +314,46 @@ impl<const CH: usize> Light<3, CH> {
 
     /// Draws a triangle that reaches so far that place and light are those of the point that is seen at each pixel.
     #[inline(never)]
-    fn draw_in_space<C: Pixel, P: Pixels<C, CH>>(
+    fn draw_in_space<C: Pixel, P: LitTexels<C, CH>>(
         &self,
         setup: &TriangleSetup<'_>,
         texture: &Textured<'_>,
         pixels: P,
         band: &mut Band<'_, C>,
     ) -> Option<u32> {
-        let level = |levels| Nodes::<3, CH, RANGE>::new(levels, CHANNEL - LEVEL).slant();
+        let level = |levels| Nodes::<3, CH, LEVEL_RANGE>::new(levels, CHANNEL - LEVEL).slant();
         let seen = setup.in_space((linear(corner_nodes(texture)).slant(), (level(self.diffuse), level(self.specular))))?;
         Some(setup.fill(|| Placed::<_, false> { place: seen, sampler: texture.sampler }, pixels, band))
     }
 
     /// The light at the corners and at these shares of the edges.
-    fn six(&self, [ab, bc, ca]: [u16; 3]) -> Light<6, CH> {
+    fn six(&self, [ab, bc, ca]: [u16; 3]) -> LightAtNodes<6, CH> {
         let six = |[a, b, c]: [i32; 3]| [a, b, c, mixed(a, b, ab), mixed(b, c, bc), mixed(c, a, ca)];
-        Light { diffuse: self.diffuse.map(six), specular: self.specular.map(six) }
+        LightAtNodes { diffuse: self.diffuse.map(six), specular: self.specular.map(six) }
     }
 }
 
 /// Makes pixels of texels and light in `CH` channels, without highlights and with them.
-pub(crate) trait Pixels<C, const CH: usize>:
+pub(crate) trait LitTexels<C, const CH: usize>:
     PixelShader<(Colour, [u32; CH]), Pixel = C> + PixelShader<(Colour, ([u32; CH], [u32; CH])), Pixel = C>
 {
     /// The sum of light at a pixel, of 255, has to be less than this.
     const MOST: i32 = 511;
 }
 
-impl<C: Pixel> Pixels<C, 3> for Texels<'_, C> {}
+impl<C: Pixel> LitTexels<C, 3> for Texels<'_, C> {}
 
-impl<C: Pixel> Pixels<C, 1> for NeutralTexels<'_, C> {}
+impl<C: Pixel> LitTexels<C, 1> for NeutralTexels<'_, C> {}
 
-impl<C: Pixel> Pixels<C, 1> for GrayTexels<'_, C> {
+impl<C: Pixel> LitTexels<C, 1> for GrayTexels<'_, C> {
     /// Where the table of colours ends.
     const MOST: i32 = RAMP as i32 - BIAS - 1;
 }
 
 /// Light by which a triangle with a texture is drawn.
-pub(crate) trait Drawn<const CH: usize> {
+pub(crate) trait DrawTextured<const CH: usize> {
     /// Draws the triangle. `None` if the general loop has to draw it.
-    fn draw<C: Pixel, P: Pixels<C, CH>>(
+    fn draw<C: Pixel, P: LitTexels<C, CH>>(
         &self,
         setup: &TriangleSetup<'_>,
         texture: &Textured<'_>,
@@ -361,9 +362,9 @@ pub(crate) trait Drawn<const CH: usize> {
     ) -> Option<u32>;
 }
 
-impl<const CH: usize> Drawn<CH> for Light<3, CH> {
+impl<const CH: usize> DrawTextured<CH> for LightAtNodes<3, CH> {
     #[inline(never)]
-    fn draw<C: Pixel, P: Pixels<C, CH>>(
+    fn draw<C: Pixel, P: LitTexels<C, CH>>(
         &self,
         setup: &TriangleSetup<'_>,
         texture: &Textured<'_>,
@@ -378,7 +379,7 @@ impl<const CH: usize> Drawn<CH> for Light<3, CH> {
             LinearWay::Quadratic(shares) => return self.six(shares).draw(setup, texture, pixels, band),
             LinearWay::InSpace => return self.draw_in_space(setup, texture, pixels, band),
         }
-        let fit = |levels| Nodes::<3, CH, RANGE>::new(levels, CHANNEL - LEVEL).fit(setup.gradients);
+        let fit = |levels| Nodes::<3, CH, LEVEL_RANGE>::new(levels, CHANNEL - LEVEL).fit(setup.gradients);
         let way = setup.way_of_places(texture);
         if matches!(way, LinearWay::Plane) {
             let (plane, sampler) = (setup.place_by_plane(texture), texture.sampler);
@@ -400,9 +401,9 @@ impl<const CH: usize> Drawn<CH> for Light<3, CH> {
     }
 }
 
-impl<const CH: usize> Drawn<CH> for Light<6, CH> {
+impl<const CH: usize> DrawTextured<CH> for LightAtNodes<6, CH> {
     #[inline(never)]
-    fn draw<C: Pixel, P: Pixels<C, CH>>(
+    fn draw<C: Pixel, P: LitTexels<C, CH>>(
         &self,
         setup: &TriangleSetup<'_>,
         texture: &Textured<'_>,
@@ -412,7 +413,7 @@ impl<const CH: usize> Drawn<CH> for Light<6, CH> {
         if !self.is_less_than(P::MOST) {
             return None;
         }
-        let fit = |levels| ByColumn(Nodes::<6, CH, RANGE>::new(levels, CHANNEL - LEVEL).fit(setup.gradients));
+        let fit = |levels| ByColumn(Nodes::<6, CH, LEVEL_RANGE>::new(levels, CHANNEL - LEVEL).fit(setup.gradients));
         if let Some(quadratic) = by_quadratic(setup, texture, setup.way_of_places(texture)) {
             let place = || Placed::<_, false> { place: ByColumn(quadratic), sampler: texture.sampler };
             return Some(self.fill(setup, place, fit, pixels, band));

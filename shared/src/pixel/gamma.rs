@@ -72,9 +72,9 @@ impl Gamma {
         let (level, part) = (level as usize, part * 256 / range);
         let next = if level + 1 < LEVELS { level + 1 } else { level };
         let value = (levels[level] as u32 * (256 - part) + levels[next] as u32 * part) >> 8;
-        let value = if value < FULL { value } else { FULL };
+        let value = if value < FULL_INTENSITY { value } else { FULL_INTENSITY };
         let full = ((1 << depth) - 1) << (8 - depth);
-        (value * full).div_ceil(FULL) as u8
+        (value * full).div_ceil(FULL_INTENSITY) as u8
     }
 
     /// The table of channels of light for a display of `depth` bits: what to send, see [`Self::curved`].
@@ -96,17 +96,17 @@ impl Gamma {
     pub(crate) fn encoded(&self, level: u32, depth: u32) -> u32 {
         let full = ((1 << depth) - 1) << (16 - depth);
         // Both products are below 2^32.
-        let level = (level.min(full) * FULL + full / 2).checked_div(full).unwrap_or(0);
+        let level = (level.min(full) * FULL_INTENSITY + full / 2).checked_div(full).unwrap_or(0);
         let (index, part) = (level >> 8, level & 0xFF);
         let at = |index: u32| u32::from(self.levels[index as usize % LEVELS]);
         let (below, above) = (at(index), at((index + 1).min(LEVELS as u32 - 1)));
         let value = (below * (256 - part) + above * part + 128) >> 8;
-        (value.min(FULL) * full + FULL / 2) / FULL
+        (value.min(FULL_INTENSITY) * full + FULL_INTENSITY / 2) / FULL_INTENSITY
     }
 }
 
 /// Full intensity, unsigned Q8.8.
-const FULL: u32 = 255 << 8;
+const FULL_INTENSITY: u32 = 255 << 8;
 
 impl fmt::Debug for Gamma {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {

@@ -242,7 +242,7 @@ impl<const DEPTH: u32> LightGray<DEPTH> {
     pub const BLACK: Self = Self(0);
 
     /// Full light. It has zeros below the channel of the display, so that no threshold makes it overflow.
-    const FULL: u8 = (((1 << DEPTH) - 1) << (8 - DEPTH)) as u8;
+    const WHITE: u8 = (((1 << DEPTH) - 1) << (8 - DEPTH)) as u8;
 
     /// The thresholds of each row, twice side by side.
     const THRESHOLDS: [[u8; 16]; 8] = {
@@ -271,7 +271,7 @@ impl<const DEPTH: u32> LightGray<DEPTH> {
         let four = |greys: [u8; 4], thresholds: u32| {
             // No sum of a grey and its threshold reaches into the next byte.
             let sums = u32::from_le_bytes(greys).wrapping_add(thresholds);
-            let upper = sums & (0x0101_0101 * u32::from(Self::FULL));
+            let upper = sums & (0x0101_0101 * u32::from(Self::WHITE));
             // The first and the third byte take the bits of the byte that follows, and then the first one those of the third.
             let pairs = upper | upper >> (8 + DEPTH);
             if DEPTH == 4 { pairs } else { pairs | pairs >> (16 + 2 * DEPTH) }
@@ -296,7 +296,7 @@ impl<const DEPTH: u32> PixelColor for LightGray<DEPTH> {
 
 impl<const DEPTH: u32> From<RawU8> for LightGray<DEPTH> {
     fn from(raw: RawU8) -> Self {
-        Self(raw.into_inner().min(Self::FULL))
+        Self(raw.into_inner().min(Self::WHITE))
     }
 }
 

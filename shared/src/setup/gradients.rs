@@ -290,7 +290,7 @@ impl Gradients {
     #[inline(always)]
     pub fn linear<const BITS: u32>(&self, nodes: [i32; 3], extra: u32) -> [i32; 3] {
         match self.precision {
-            Precision::WordSized(area) if BITS <= word_sized::LINEAR && extra <= word_sized::EXTRA => {
+            Precision::WordSized(area) if BITS <= word_sized::LINEAR && extra <= word_sized::MOST_EXTRA => {
                 area.linear(self.edges, self.subpixels(), nodes, extra)
             }
             Precision::WordSized(area)
@@ -363,7 +363,7 @@ impl Gradients {
     #[inline(always)]
     pub fn quadratic<const BITS: u32>(&self, nodes: [i32; 6], extra: u32) -> [i32; 6] {
         match self.precision {
-            Precision::WordSized(area) if BITS <= word_sized::QUADRATIC && extra <= word_sized::EXTRA => {
+            Precision::WordSized(area) if BITS <= word_sized::QUADRATIC && extra <= word_sized::MOST_EXTRA => {
                 match area.quadratic(self.edges, self.subpixels(), nodes, extra) {
                     Some(fitted) => fitted,
                     None => {

@@ -19,7 +19,7 @@ use crate::{
 };
 
 /// Largest number of fraction bits that walked values have more than nodes.
-pub(crate) const EXTRA: u32 = 16;
+pub(crate) const MOST_EXTRA: u32 = 16;
 /// Bits of the range of nodes of a linear field.
 pub(crate) const LINEAR: u32 = 20;
 /// Bits of the range of nodes of a quadratic.
@@ -70,7 +70,7 @@ impl WordSized {
     }
 
     /// `[c, dx, dy]` of the linear field through the corners' values, of at most [`LINEAR`] bits, at `offset` from corner 0
-    /// (1/16 pixel), with up to [`EXTRA`] more fraction bits.
+    /// (1/16 pixel), with up to [`MOST_EXTRA`] more fraction bits.
     #[inline]
     pub(crate) fn linear(&self, edges: [[i32; 2]; 2], offset: [i32; 2], [i0, i1, i2]: [i32; 3], extra: u32) -> [i32; 3] {
         let [dx, dy] = self.slopes(edges, [i1 - i0, i2 - i0], extra);
@@ -80,7 +80,7 @@ impl WordSized {
     }
 
     /// `[c, dx, dy, dxx, dxy, dyy]` of the quadratic through six nodes, of at most [`QUADRATIC`] bits, at `offset` from corner 0
-    /// (1/16 pixel), with `extra` more fraction bits, [`EXTRA`] or one less; `None` if a second derivative does not fit a word.
+    /// (1/16 pixel), with `extra` more fraction bits, [`MOST_EXTRA`] or one less; `None` if a second derivative does not fit a word.
     #[inline(always)]
     pub(crate) fn quadratic(
         &self,
@@ -231,7 +231,7 @@ impl WordSized {
     #[inline]
     fn slopes(&self, [[x1, y1], [x2, y2]]: [[i32; 2]; 2], [a, b]: [i32; 2], extra: u32) -> [i32; 2] {
         // The inverse with as many bits as a shift by less than a word leaves room for.
-        let inverse = self.inverse >> (EXTRA - extra);
+        let inverse = self.inverse >> (MOST_EXTRA - extra);
         let slope = |numerator: i32| shifted(product(numerator, inverse), self.zeros - 10);
         [slope(a * y2 - b * y1), slope(b * x1 - a * x2)]
     }

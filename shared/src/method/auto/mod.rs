@@ -30,7 +30,7 @@ use crate::{
     },
     math::vector::{map, zip},
     method::{
-        DrawTriangle, Facts, HighlightField, Loops, Method, RANGE, Shading, Style, TriangleSetup, VertexLight,
+        DrawTriangle, Facts, HighlightField, LEVEL_RANGE, Loops, Method, Shading, Style, TriangleSetup, VertexLight,
         auto::error_bound::ErrorBounds,
         channels,
         cosines::{phong::Phong, sqrt6},
@@ -171,11 +171,11 @@ impl<const QUADRATICS: bool> Method for Auto<QUADRATICS> {
             (Choice::Linear(_), constant) => {
                 let levels =
                     if constant.is_some() { gouraud::reflected(setup, &reflectance) } else { corner_levels(setup, shading, uniform) };
-                shading.draw_channels::<3, RANGE>(setup, &channels(levels), raises, canvas)
+                shading.draw_channels::<3, LEVEL_RANGE>(setup, &channels(levels), raises, canvas)
             }
             (Choice::Quadratic, Some(_)) if QUADRATICS => SixPoint.shade(setup, shading, canvas),
             (Choice::Quadratic, None) if QUADRATICS => {
-                shading.draw_channels::<6, RANGE>(setup, &six_under_two(setup, shading), [0; 3], canvas)
+                shading.draw_channels::<6, LEVEL_RANGE>(setup, &six_under_two(setup, shading), [0; 3], canvas)
             }
             (Choice::Cosines, _) if QUADRATICS => sqrt6::shade_constant::<false>(setup, None, shading, canvas),
             (Choice::Quadratic | Choice::Cosines | Choice::Phong, _) => Phong.shade(setup, shading, canvas),

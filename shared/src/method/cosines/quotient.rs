@@ -38,14 +38,14 @@ use crate::{
 };
 use microphong_kernels as kernels;
 
-/// Fraction bits of a diffuse level at a node. With a sign, levels then have [`RANGE`] bits.
-pub(super) const NODE: u32 = 10;
+/// Fraction bits of a diffuse level at a node. With a sign, levels then have [`DIFFUSE_RANGE`] bits.
+pub(super) const DIFFUSE_NODE: u32 = 10;
 /// Bits of the range of diffuse levels at nodes.
-pub(super) const RANGE: u32 = 20;
+pub(super) const DIFFUSE_RANGE: u32 = 20;
 /// Fraction bits of a walked diffuse level.
-pub(super) const LEVEL: u32 = 22;
+pub(super) const DIFFUSE: u32 = 22;
 /// Fraction bits of a level at a pixel, which is the upper half of the product of a walked level and half a reciprocal length, Q2.30.
-pub(super) const PIXEL: u32 = LEVEL - 3;
+pub(super) const PIXEL: u32 = DIFFUSE - 3;
 /// Bits of the range of shares of a colour at nodes, which are Q1.[`SHARE_NODE`] in [0, 1].
 const SHARES: u32 = SHARE_NODE + 1;
 /// Fraction bits of a share of a colour at a node.
@@ -373,8 +373,8 @@ fn draw_diffuse<C: Pixel>(
 #[inline(always)]
 fn diffuse(setup: &TriangleSetup<'_>, full: u16, lengths: &Lengths, towards: &[i32; 3]) -> Plane<1> {
     let [a, b, c] = lengths.apply(towards);
-    let nodes = [node(full, a, NODE), node(full, b, NODE), node(full, c, NODE)];
-    Nodes::<3, 1, RANGE>::new([nodes], LEVEL - NODE).fit(setup.gradients)
+    let nodes = [node(full, a, DIFFUSE_NODE), node(full, b, DIFFUSE_NODE), node(full, c, DIFFUSE_NODE)];
+    Nodes::<3, 1, DIFFUSE_RANGE>::new([nodes], DIFFUSE - DIFFUSE_NODE).fit(setup.gradients)
 }
 
 /// A function of its own around [`diffuse`].
@@ -388,7 +388,7 @@ pub(super) fn plane(setup: &TriangleSetup<'_>, full: u16, lengths: &Lengths, tow
 fn highlight(setup: &TriangleSetup<'_>, lookup: QuotientLookup<'_>, lengths: &Lengths, half: &[i32; 3]) -> Plane<1> {
     let [a, b, c] = lengths.apply(half);
     let half = [lookup.node(a), lookup.node(b), lookup.node(c)];
-    Nodes::<3, 1, STEPS>::new([half], highlight_lookup::EXTRA).fit(setup.gradients)
+    Nodes::<3, 1, STEPS>::new([half], highlight_lookup::NUMERATOR_EXTRA).fit(setup.gradients)
 }
 
 /// A function of its own around [`highlight`].

@@ -32,7 +32,7 @@ use crate::{
         rsqrt::sqrt,
     },
     method::{
-        CornerCosines, Facts, HighlightField, Loops, Method, Middles, RANGE, Shading, Style, TriangleSetup, VertexLight,
+        CornerCosines, Facts, HighlightField, LEVEL_RANGE, Loops, Method, Middles, Shading, Style, TriangleSetup, VertexLight,
         cosines::{
             lit::{AtPixel, FromValues, LitShader},
             quotient::{colour, is_plane},
@@ -341,7 +341,7 @@ fn draw_diffuse<C: Pixel>(
 /// The diffuse level of a material with the level `full` at cosine 1, from the cosines at six nodes.
 #[inline(never)]
 fn diffuse(setup: &TriangleSetup<'_>, full: u16, cosines: [i32; 6]) -> Quadric<1> {
-    Nodes::<6, 1, RANGE>::new([map_six(cosines, |cosine| node(full, cosine, LEVEL))], WALK - LEVEL).fit(setup.gradients)
+    Nodes::<6, 1, LEVEL_RANGE>::new([map_six(cosines, |cosine| node(full, cosine, LEVEL))], WALK - LEVEL).fit(setup.gradients)
 }
 
 /// 1 minus the root of N·H, or minus N·H, which is `half` at the corners, as the table of highlights is looked up by.
@@ -411,7 +411,7 @@ enum DiffuseSign {
     Everywhere,
     Nowhere,
     Partly,
-    /// Positive in part, but nodes differ by more than 1, so that levels exceed [`RANGE`], or the quadratic may leave [-1, 1], so that
+    /// Positive in part, but nodes differ by more than 1, so that levels exceed [`LEVEL_RANGE`], or the quadratic may leave [-1, 1], so that
     /// levels wrap.
     Steeply,
 }

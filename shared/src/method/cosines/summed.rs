@@ -38,7 +38,10 @@ use crate::{
                 self,
                 term::{NearTerm, NearTerms},
             },
-            quotient::{HalfReciprocal, LEVEL, NODE, PIXEL, Quotient, QuotientWithHighlight, RANGE, colour, is_plane, numerator, plane},
+            quotient::{
+                DIFFUSE, DIFFUSE_NODE, DIFFUSE_RANGE, HalfReciprocal, PIXEL, Quotient, QuotientWithHighlight, colour, is_plane, numerator,
+                plane,
+            },
             scale::{Lengths, STEEPEST},
         },
         largest,
@@ -319,9 +322,9 @@ fn sums<const CH: usize>(
     corners: &[[i32; 3]; 3],
     wanted: impl Fn([[i32; 3]; 3]) -> [[i32; 3]; CH],
 ) -> Plane<CH> {
-    let node = |sum: i32| sum.wrapping_add(1 << (LEVEL - NODE - 1)) >> (LEVEL - NODE);
+    let node = |sum: i32| sum.wrapping_add(1 << (DIFFUSE - DIFFUSE_NODE - 1)) >> (DIFFUSE - DIFFUSE_NODE);
     let nodes = wanted(map(*corners, |channel| map(lengths.apply(&channel), node)));
-    Nodes::<3, CH, RANGE>::new(nodes, LEVEL - NODE).fit(setup.gradients)
+    Nodes::<3, CH, DIFFUSE_RANGE>::new(nodes, DIFFUSE - DIFFUSE_NODE).fit(setup.gradients)
 }
 
 /// In greys all channels are the same.
@@ -341,7 +344,7 @@ impl FromValues<HalfReciprocal, [u32; 3]> for Summed {
 }
 
 // The upper half of a product with half a reciprocal length, Q2.30, has three bits less.
-const _: () = assert!(SUMMED == LEVEL - 3);
+const _: () = assert!(SUMMED == DIFFUSE - 3);
 
 /// The value at a pixel: its column, the numerators of the sums, and |N|².
 type Value<const CH: usize> = (i32, ([u32; CH], [u32; 1]));

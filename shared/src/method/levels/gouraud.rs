@@ -22,7 +22,7 @@ use crate::{
     },
     math::vector::{map, zip},
     method::{
-        Facts, LinearWay, Loops, Method, RANGE, Shading, Style, TriangleSetup, VertexLight, channels, fit_levels, indices, largest,
+        Facts, LEVEL_RANGE, LinearWay, Loops, Method, Shading, Style, TriangleSetup, VertexLight, channels, fit_levels, indices, largest,
         largest_range, node::mixed, texture, three_levels,
     },
     pixel::{Pixel, ramps::Ramps},
@@ -52,7 +52,7 @@ impl Method for Gouraud {
         if setup.has_texture() {
             return setup.draw_parts(corner_parts(setup, shading), canvas);
         }
-        shading.draw_levels::<3, RANGE>(setup, corner_levels(setup, shading), canvas)
+        shading.draw_levels::<3, LEVEL_RANGE>(setup, corner_levels(setup, shading), canvas)
     }
 }
 
@@ -154,7 +154,7 @@ pub(crate) fn draw_three<C: Pixel>(
 /// Returns the number of its pixels in `band`.
 #[inline(never)]
 fn draw_tinted<C: Pixel>(setup: &TriangleSetup<'_>, nodes: [i32; 3], tint: Tint<C>, band: &mut Band<'_, C>) -> u32 {
-    setup.fill(|| Nodes::<3, 1, RANGE>::new([nodes], CHANNEL - LEVEL).fit(setup.gradients), tint, band)
+    setup.fill(|| Nodes::<3, 1, LEVEL_RANGE>::new([nodes], CHANNEL - LEVEL).fit(setup.gradients), tint, band)
 }
 
 impl<C: Pixel> PixelShader<[u32; 1]> for Tint<C> {

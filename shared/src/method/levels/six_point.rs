@@ -6,7 +6,9 @@
 use crate::{
     interpolate::by_column::ByColumn,
     lighting::{albedo::Parts, material_tables::MaterialTables},
-    method::{Facts, Loops, Method, RANGE, Shading, Style, TriangleSetup, VertexLight, channels, levels::gouraud, node::map_six, texture},
+    method::{
+        Facts, LEVEL_RANGE, Loops, Method, Shading, Style, TriangleSetup, VertexLight, channels, levels::gouraud, node::map_six, texture,
+    },
     pixel::Pixel,
     raster::{band::Band, canvas::Canvas},
 };
@@ -34,7 +36,7 @@ impl Method for SixPoint {
         if setup.has_texture() {
             return area.draw_parts(parts(setup, shading), canvas);
         }
-        shading.draw_channels::<6, RANGE>(area, &levels(setup, shading), [0; 3], canvas)
+        shading.draw_channels::<6, LEVEL_RANGE>(area, &levels(setup, shading), [0; 3], canvas)
     }
 }
 
